@@ -2,7 +2,7 @@
 # processor. Debian has {fmt} and toml++ as shared objects only; tools/static compiles them out of their headers.
 #
 # It is the objects and libraries of `ipos` once more, linked without any shared object, so it costs no compilation.
-foreach(library asmjit edit tinfo bsd md z)
+foreach(library asmjit edit tinfo bsd md z expat)
   find_library(IPOS_STATIC_${library} lib${library}.a)
 endforeach()
 set(IPOS_STATIC OFF)
@@ -29,7 +29,7 @@ if(IPOS_STATIC)
     endforeach()
   endforeach()
   set(others "")
-  foreach(library asmjit edit tinfo bsd md z)
+  foreach(library asmjit edit tinfo bsd md z expat)
     if(IPOS_STATIC_${library})
       list(APPEND others ${IPOS_STATIC_${library}})
     endif()

@@ -1,7 +1,7 @@
 # A plant: stations on their lines, and their surroundings, on one clock.
 ipos_layer(runtime
   FOLDERS runtime/plant
-  SOURCES plant/belt.cpp plant/surroundings.cpp plant/plant.cpp plant/start_checks.cpp plant/all_mistakes.cpp plant/actions.cpp
+  SOURCES plant/belt.cpp plant/surroundings.cpp plant/machines.cpp plant/plant.cpp plant/start_checks.cpp plant/all_mistakes.cpp plant/actions.cpp
           plant/trace_hash.cpp
   USES signals station plant_file unit vm image bus scom drive positioning motion storage stdlib
   LIBS fmt::fmt)

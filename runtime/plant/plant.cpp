@@ -49,18 +49,21 @@ Plant::Plant(PlantFile file, std::vector<std::optional<vm::Image>> programs, std
              std::vector<PlantError>& errors, const Execution& execution)
     : file_(std::move(file)) {
   journal_.ask_first([this] { look(); });
-  // Sources order the events of one moment: first the lines, then the surroundings, then stations and
+  // Sources order the events of one moment: first the lines, then machines, the surroundings, then stations and
   // controls, each in the order of the file.
   for (const BusConfig& bus : file_.buses) add_bus(bus);
+  machines_ = std::make_unique<Machines>(queue_, next_source_, file_, journal_);
   surroundings_ = std::make_unique<Surroundings>(queue_, next_source_++, journal_);
   for (size_t n = 0; n < file_.stations.size(); ++n)
     add_station(n, std::move(programs[n]), rates, errors, execution);
   for (const ControlConfig& config : file_.controls)
     if (auto control = make_control({*this, queue_, next_source_, journal_}, config, errors))
       controls_.push_back(std::move(control));
+  machines_->connect(*this, errors);
   surroundings_->connect(file_, *this, errors);
   resolve_expectations(errors);
   if (!errors.empty()) return;
+  machines_->start();
   surroundings_->start();
   tell_findings(*this, journal_);
   power_on();
@@ -173,7 +176,7 @@ bool Plant::run_until(Time end, const std::function<bool(Time)>& keep_going) {
     at = keep_going ? std::min(end, (at / kMillisecond + 1) * kMillisecond) : end;
     check_expectations(at);
     queue_.run_until(at);
-    if (keep_going && !keep_going(at)) {
+    if (keep_going && (!keep_going(at) || !machines_->failures().empty())) {
       check_expectations(at + 1);
       return false;
     }

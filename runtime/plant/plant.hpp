@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "runtime/journal/journal.hpp"
+#include "runtime/plant/machines.hpp"
 #include "runtime/plant/surroundings.hpp"
 #include "runtime/plant_file/plant_file.hpp"
 #include "runtime/station/plant_parts.hpp"
@@ -35,7 +36,7 @@ class Plant final : public PlantParts {
   void add_observer(SerialObserver& observer);
 
   // Runs until `end`; expectations that fall due are checked. Returns false when `keep_going` said so: it is
-  // asked once a millisecond of virtual time.
+  // asked once a millisecond of virtual time. A machine that gives up ends it there, too.
   bool run_until(Time end, const std::function<bool(Time)>& keep_going = {});
 
   // The run is over: what is still to be stored is stored. False: the journal says what could not be.
@@ -56,6 +57,8 @@ class Plant final : public PlantParts {
   // For a test that acts on the plant from outside while it runs.
   Surroundings& surroundings() { return *surroundings_; }
   const Surroundings& surroundings() const { return *surroundings_; }
+  Machines& machines() { return *machines_; }
+  const Machines& machines() const { return *machines_; }
   // The power of a station or a gateway, which exists. The journal tells each change.
   void set_power(std::string_view name, bool on);
   // Plants a fault of a line, whose times are those of the plant. False: its station is not on the bus.
@@ -95,6 +98,7 @@ class Plant final : public PlantParts {
   Journal journal_;
   std::deque<BusConfig> keypads_;  // lines that are not in the file
   std::vector<std::unique_ptr<Bus>> buses_;
+  std::unique_ptr<Machines> machines_;
   std::unique_ptr<Surroundings> surroundings_;
   std::vector<std::unique_ptr<Station>> stations_;
   std::vector<std::unique_ptr<Control>> controls_;

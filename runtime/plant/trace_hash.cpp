@@ -85,6 +85,7 @@ TraceHash::TraceHash(Plant& plant, Time step) : plant_(plant), step_(step) {
     name.add_text(bus->name());
     names_.emplace_back(bus.get(), name.value());
   }
+  plant.machines().add_watcher(*this);
   for (const auto& station : plant.stations())
     station->add_watcher(*courses_.emplace_back(std::make_unique<Course>(*station)));
 }
@@ -109,6 +110,11 @@ void TraceHash::on_trace(const Bus& bus, std::span<const uint64_t> facts) {
   for (const auto& [named, name] : names_)
     if (named == &bus) hash_.add(name);
   for (const uint64_t fact : facts) hash_.add(fact);
+}
+
+void TraceHash::on_given(size_t machine, Time now, std::span<const int64_t> samples) {
+  hash_.add_all(machine, now);
+  for (const int64_t sample : samples) hash_.add(static_cast<uint64_t>(sample));
 }
 
 }  // namespace ipos::runtime

@@ -1,7 +1,7 @@
 // `ipos run --trace-hash`: one number over what a run did, to compare runs, builds and engines. Two runs with the
 // same number had the same frames and characters at the same times; their drives had, in every millisecond, the same
 // status, fault, speed, setpoint, inputs and outputs; and every tenth of a second, and at the end, everything was the
-// same: variables, tasks, positions, temperatures.
+// same: variables, tasks, positions, temperatures. What foreign machines gave to their signals was the same, too.
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ class NumberHash {
   uint64_t hash_ = 0xCBF29CE484222325;
 };
 
-class TraceHash final : private BusTracer {
+class TraceHash final : private BusTracer, private MachineWatcher {
  public:
   // Everything is looked at so often: tasks that run ahead would have to stop for each look (ours).
   static constexpr Time kStep = 100 * kMillisecond;
@@ -65,6 +65,7 @@ class TraceHash final : private BusTracer {
   };
 
   void on_trace(const Bus& bus, std::span<const uint64_t> facts) override;
+  void on_given(size_t machine, Time now, std::span<const int64_t> samples) override;
 
   const Plant& plant_;
   Time step_;

@@ -45,13 +45,14 @@ std::optional<toml::table> parse_toml(PlantReader& reader, std::string_view text
 
 void read_plant_sections(PlantReader& reader, const toml::table& root,
                          const std::vector<std::string_view>& also) {
-  std::vector<std::string_view> known = {"bus", "station", "control", "fault", "stimulus", "wire", "switch"};
+  std::vector<std::string_view> known = {"bus", "station", "control", "fault", "stimulus", "wire", "switch", "machine"};
   known.insert(known.end(), also.begin(), also.end());
   reader.known_keys(root, "the plant", known);
   read_buses(reader, root);
   read_stations(reader, root);
   read_controls(reader, root);
   read_faults(reader, root);
+  read_foreign_machines(reader, root);
   read_surroundings(reader, root);
 }
 

@@ -19,6 +19,7 @@
 #include "runtime/nv_memory/medium/file_medium.hpp"
 #include "runtime/plant_file/bus_kind.hpp"
 #include "runtime/plant_file/driven_machine.hpp"
+#include "runtime/plant_file/foreign_machine.hpp"
 #include "runtime/plant_file/profibus_config.hpp"
 #include "runtime/plant_file/signal.hpp"
 #include "runtime/plant_file/toml_text.hpp"
@@ -193,6 +194,7 @@ struct PlantFile {
   std::vector<Wire> wires;
   std::vector<PositionSwitch> switches;
   std::vector<LightBarrier> barriers;
+  std::vector<MachineConfig> machines;
   std::vector<Expectation> expectations;
   size_t expectations_of_tests = 0;  // [[expect]] of kinds that only `ipos test` looks at
 };

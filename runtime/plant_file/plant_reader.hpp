@@ -32,6 +32,7 @@ class PlantReader {
   std::set<std::string> bus_names;
   std::set<std::string> station_names;
   std::set<std::string> gateway_names;  // of the stations, those without anything to look at
+  std::set<std::string> machine_names;
   std::set<std::string> port_names;
   std::set<std::string> nvram_files;
   std::vector<std::pair<BusUse, BusKind>> bus_uses;  // with the kind it must be of
@@ -118,6 +119,7 @@ void read_buses(PlantReader& reader, const toml::table& root);
 void read_stations(PlantReader& reader, const toml::table& root);
 void read_gateway(PlantReader& reader, const toml::table& table);
 void read_machine(PlantReader& reader, const toml::table& station, StationConfig& config);
+void read_foreign_machines(PlantReader& reader, const toml::table& root);
 // Of a [[switch]] with part_at, all but its input and its active level.
 void read_barrier(PlantReader& reader, const toml::table& table, LightBarrier barrier);
 void read_profibus_card(PlantReader& reader, const toml::table& table, StationConfig& config);
@@ -127,7 +129,7 @@ void read_controls(PlantReader& reader, const toml::table& root);
 // Of a [[control]] with kind = "canopen", all but what every control has.
 canopen::MasterSettings read_canopen_master(PlantReader& reader, const toml::table& table);
 void read_faults(PlantReader& reader, const toml::table& root);
-void read_surroundings(PlantReader& reader, const toml::table& root);  // stimulus, wire, switch
+void read_surroundings(PlantReader& reader, const toml::table& root);  // stimulus, wire, switch; after the machines
 void read_expectations(PlantReader& reader, const toml::table& root);
 
 // Parts of them that a test file has, too. Signal, action and times of a stimulus, without station and `at`.

@@ -153,29 +153,54 @@ void read_switch(PlantReader& reader, const toml::table& table) {
   reader.result.plant.switches.push_back(std::move(added));
 }
 
+// What is wired to a machine, if it is a terminal: "hoist.DI03".
+std::optional<Signal> input_of(const std::string& written) {
+  const size_t dot = written.rfind('.');
+  if (dot == std::string::npos) return std::nullopt;
+  Signal signal;
+  signal.station = written.substr(0, dot);
+  signal.name = written.substr(dot + 1);
+  signal.kind = SignalKind::Input;
+  const int line = std::max(parse_input(signal.name), parse_analog_input(signal.name));
+  if (line < 0) return std::nullopt;
+  signal.line = static_cast<uint8_t>(line);
+  return signal;
+}
+
 // An input has one driver, and what is driven can be forced, but not set.
 void check_drivers(PlantReader& reader) {
   const PlantFile& plant = reader.result.plant;
-  std::vector<const Signal*> driven;
-  const auto is_driven = [&](const Signal& signal) {
-    return std::any_of(driven.begin(), driven.end(), [&](const Signal* other) {
-      return signal.kind == SignalKind::Input && other->station == signal.station &&
-             other->line == signal.line;
+  struct Driven {
+    Signal signal;
+    std::string_view by;
+  };
+  std::vector<Driven> driven;
+  const auto driver_of = [&](const Signal& signal) {
+    const auto found = std::find_if(driven.begin(), driven.end(), [&](const Driven& other) {
+      return signal.kind == SignalKind::Input && other.signal.station == signal.station &&
+             same_terminal(other.signal.line, signal.line);
     });
+    return found == driven.end() ? std::string_view() : found->by;
   };
-  const auto drive = [&](const Signal& signal, FilePlace place) {
+  const auto drive = [&](const Signal& signal, std::string_view by, FilePlace place) {
     if (signal.station.empty()) return;
-    if (is_driven(signal))
-      reader.error(place, fmt::format("{} of {} has a wire or switch already", signal.name, signal.station));
-    driven.push_back(&signal);
+    if (const auto other = driver_of(signal); !other.empty())
+      reader.error(place, fmt::format("{} of {} has a {} already", signal.name, signal.station, other));
+    driven.push_back({signal, by});
   };
-  for (const Wire& wire : plant.wires) drive(wire.to, wire.place);
-  for (const PositionSwitch& added : plant.switches) drive(added.input, added.place);
-  for (const LightBarrier& barrier : plant.barriers) drive(barrier.input, barrier.place);
-  for (const Stimulus& stimulus : plant.stimuli)
-    if (stimulus.action == Stimulus::Action::Set && is_driven(stimulus.signal))
-      reader.error(stimulus.place, fmt::format("{} of {} hangs on a wire or switch: force it, do not set it",
-                                               stimulus.signal.name, stimulus.signal.station));
+  constexpr std::string_view kWireOrSwitch = "wire or switch";
+  for (const Wire& wire : plant.wires) drive(wire.to, kWireOrSwitch, wire.place);
+  for (const PositionSwitch& added : plant.switches) drive(added.input, kWireOrSwitch, added.place);
+  for (const LightBarrier& barrier : plant.barriers) drive(barrier.input, kWireOrSwitch, barrier.place);
+  for (const MachineConfig& machine : plant.machines)
+    for (const MachineWire& wire : machine.outputs)
+      if (const auto input = input_of(wire.signal)) drive(*input, "machine", wire.place);
+  for (const Stimulus& stimulus : plant.stimuli) {
+    const auto by = stimulus.action == Stimulus::Action::Set ? driver_of(stimulus.signal) : std::string_view();
+    if (!by.empty())
+      reader.error(stimulus.place, fmt::format("{} of {} hangs on a {}: force it, do not set it", stimulus.signal.name,
+                                               stimulus.signal.station, by));
+  }
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ def compiled(build: Path) -> None:
 
 
 # Of these only names and numbers are in what uses the shared libraries.
-SHARED = ["deb:libc6-dev", "deb:linux-libc-dev", "deb:libedit-dev", "deb:zlib1g-dev"]
+SHARED = ["deb:libc6-dev", "deb:linux-libc-dev", "deb:libedit-dev", "deb:zlib1g-dev", "deb:libexpat1-dev"]
 
 BUNDLES = """
 import { build } from "esbuild";

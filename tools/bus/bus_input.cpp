@@ -31,7 +31,7 @@ void add_names_options(cli::Verb& verb, NamesFlags& flags) {
   verb.option("--names,--plant,--program", flags.plant,
               "plant or program whose stations, parameters and variables are named");
   verb.flag("--canopen", flags.canopen, "the frames are those of CANopen nodes, also where no plant says so");
-  add_compile_options(verb, flags.compile);
+  add_plant_options(verb, flags.compile);
 }
 
 }  // namespace ipos::tools

@@ -280,7 +280,7 @@ void add_bus_plan(cli::Verb& bus) {
   verb.option("--acyclic", flags->acyclic, "assumed distance of telegrams the trial shows once; default 10ms")
       .check(check_distance, "TIME");
   verb.option("--format", flags->format, "text or json").one_of({"text", "json"});
-  add_compile_options(verb, flags->compile);
+  add_plant_options(verb, flags->compile);
   verb.footer("Example:\n  ipos bus plan examples/scom/scom.toml");
   verb.runs([flags] { return plan_bus(*flags); });
 }

@@ -161,7 +161,7 @@ void add_bus_replay(cli::Verb& bus) {
               "write the frames of all buses, in the form of its ending: .pcapng, .asc, .trc, else candump");
   verb.flag("--watch", flags->watch, "*", "show named variables at the end, all or --watch=NAME,...");
   verb.flag("--why", flags->why, "also tell what was ignored, and why");
-  add_compile_options(verb, flags->compile);
+  add_plant_options(verb, flags->compile);
   verb.footer("Example:\n  ipos bus replay can.log plant.toml --id 400,401 --watch");
   verb.runs([flags] { return replay(*flags); });
 }

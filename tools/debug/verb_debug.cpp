@@ -157,7 +157,7 @@ void add_common(cli::Verb& verb, DebugFlags& flags) {
   verb.option("--speed", flags.speed, "commands per ms of every task, instead of P938 and P939")
       .between(1U, 1'000'000U);
   verb.off("--no-snapshots", flags.snapshots, "step back by running again from the beginning");
-  add_compile_options(verb, flags.compile);
+  add_plant_options(verb, flags.compile);
 }
 
 }  // namespace

@@ -46,6 +46,9 @@ void Debugger::build() {
   open_ = nullptr;
   next_change_ = 0;
   told_all_ended_ = false;
+  told_failures_ = 0;
+  if (snapshots_ && !plant_->machines().gives_states())
+    plant_->tell(runtime::Weight::Warning, "", "time goes back by running again from 0 s: not every FMU can give its state");
   front_end_.built(*plant_);
 }
 
@@ -206,6 +209,8 @@ bool Debugger::between() {
   if (auto stop = task_ended()) return take(std::move(*stop));
   if (goal_.order.motion == Motion::ToTime && plant_->now() >= goal_.order.time)
     return take({Reason::Step, {}, {}, ""});
+  if (const auto& failures = plant_->machines().failures(); told_failures_ < failures.size())
+    return take({Reason::Fault, {}, {}, failures[told_failures_++].text});
   if (plant_->now() >= limit_) return take({Reason::Limit, {}, {}, "the time to run is over"});
   if (!told_all_ended_ && plant_->programs_over()) {
     told_all_ended_ = true;
@@ -342,9 +347,14 @@ bool Debugger::snapshot_is_due() const {
 bool Debugger::snapshot() {
   if (!snapshots_ || !takes_snapshots_) return false;
   last_snapshot_ = position_;
+  // A copy has the processes of machines in common with this one, so it puts their states back.
+  const auto machines = plant_->machines().save();
+  if (!machines) return false;
   const std::optional<std::string> bytes = snapshots_->take(position_);
-  if (bytes) load(*bytes);
-  return bytes.has_value();
+  if (!bytes) return false;
+  plant_->machines().restore(*machines);
+  load(*bytes);
+  return true;
 }
 
 std::string Debugger::save() {

@@ -156,6 +156,7 @@ class Debugger final : private runtime::CommandRunner {
   std::unique_ptr<Snapshots> snapshots_;  // none: it runs again from the beginning
   bool resumes_ = false;
   bool takes_snapshots_ = true;
+  size_t told_failures_ = 0;  // of machines
 
   std::vector<Breakpoint> breakpoints_;
   std::vector<Watchpoint> watchpoints_;

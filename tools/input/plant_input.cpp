@@ -15,6 +15,7 @@
 #include "tools/cli/files.hpp"
 #include "tools/input/mistakes.hpp"
 #include "tools/input/plant_source.hpp"
+#include "tools/machines/open_machines.hpp"
 
 namespace ipos::tools {
 namespace {
@@ -98,6 +99,7 @@ PlantInput read_plant_input(const std::string& path, const CompileFlags& compile
     runtime::PlantFileResult read = try_read_plant(path);
     input.file = std::move(read.plant);
     errors = std::move(read.errors);
+    for (runtime::PlantError& error : open_machines(input.file, path, compile.allow_fmu)) errors.push_back(std::move(error));
   } else {
     input.file = plant_of_program(path, sbus);
   }

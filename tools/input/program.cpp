@@ -108,6 +108,11 @@ void add_compile_options(cli::Verb& verb, CompileFlags& flags) {
   verb.option("--diagnostics", flags.diagnostics, "text, json or sarif").one_of({"text", "json", "sarif"});
 }
 
+void add_plant_options(cli::Verb& verb, CompileFlags& flags) {
+  add_compile_options(verb, flags);
+  verb.flag("--allow-fmu", flags.allow_fmu, "let the FMUs run that are machines of the plant; they are programs of others");
+}
+
 compiler::CompileOptions options_of(const CompileFlags& flags) {
   compiler::CompileOptions options;
   options.include_dirs = flags.include_dirs;

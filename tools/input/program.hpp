@@ -21,11 +21,15 @@ struct CompileFlags {
   std::string unit;                       // --unit; empty: from the source
   bool atomic = false;                    // --atomic
   std::string diagnostics = "text";       // text, json or sarif
+  bool allow_fmu = false;                 // --allow-fmu: machines of the plant may be programs of others
   BuildRecord* record = nullptr;          // takes what is read and told, in place of sources.hpp and standard error
 };
 
 // -I, -D, -W, --unit and --diagnostics, for every verb that compiles.
 void add_compile_options(cli::Verb& verb, CompileFlags& flags);
+
+// These, and --allow-fmu, for every verb that runs a plant.
+void add_plant_options(cli::Verb& verb, CompileFlags& flags);
 
 // What the compiler is told; an unknown warning or unit is a Failure.
 compiler::CompileOptions options_of(const CompileFlags& flags);

@@ -20,6 +20,7 @@
 #include "tools/coverage/collector.hpp"
 #include "tools/coverage/coverage_reports.hpp"
 #include "tools/input/folder_plant.hpp"
+#include "tools/input/mistakes.hpp"
 #include "tools/input/offers.hpp"
 #include "tools/input/plant_input.hpp"
 #include "tools/input/plant_source.hpp"
@@ -339,7 +340,8 @@ int run(const RunFlags& flags) {
                                                                  : profile::table(profiler->tasks()));
   print_journal(plant, flags.why);
   if (trace_hash) fmt::print(stderr, "trace hash {}\n", trace_hash->text());
-  const size_t unmet = print_expectations(plant, flags.file);
+  print_mistakes(flags.file, plant.machines().failures());
+  const size_t unmet = print_expectations(plant, flags.file) + plant.machines().failures().size();
   if (interrupted()) return kInterrupted;
   if (!ports_there || !stored) return kIoError;
   return print_faults(plant, is_plant(flags.file)) + unmet != 0 ? kFindings : kGood;
@@ -387,7 +389,7 @@ void add_run(cli::Verb& app) {
   verb.flag("--realtime", flags->realtime,
             "keep pace with the clock, and join buses that have a port to the real world");
   verb.flag("--why", flags->why, "also tell what was ignored, and why");
-  add_compile_options(verb, flags->compile);
+  add_plant_options(verb, flags->compile);
   verb.footer("Example:\n  ipos run examples/scom/scom.toml --for 1s --watch --log can.log");
   verb.runs([flags] {
     flags->file = plant_or_program(flags->file);

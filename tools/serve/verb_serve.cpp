@@ -227,7 +227,7 @@ void add_serve(cli::Verb& app) {
   verb.flag("--write", flags->write, "let the page write to that drive, which it asks once more, or files of the plant beyond loopback");
   add_link_options(verb, flags->device, false);
   verb.off("--no-snapshots", flags->snapshots, "go back in time by running again from the beginning");
-  add_compile_options(verb, flags->compile);
+  add_plant_options(verb, flags->compile);
   verb.footer("Example:\n  ipos serve examples/sbus-line/line.toml --open");
   verb.runs([flags] { return serve_page(*flags); });
 }

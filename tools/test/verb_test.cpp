@@ -277,7 +277,7 @@ void add_test(cli::Verb& app) {
   verb.option("--artifacts", flags->artifacts,
               "folder for plot, trace, log of the buses and journal of every test that fails");
   add_coverage_option(verb, flags->coverage);
-  add_compile_options(verb, flags->suite.compile);
+  add_plant_options(verb, flags->suite.compile);
   verb.footer("Example:\n  ipos test examples --junit report.xml");
   verb.runs([flags] {
     if (flags->paths.empty()) flags->paths.emplace_back(".");

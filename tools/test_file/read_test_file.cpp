@@ -95,7 +95,7 @@ void read_named_plant(PlantReader& reader, const toml::table& root, TestCase& te
   if (name.empty()) return;
   const FilePlace place = place_of(*root.get("plant"));
   test.plant_expects = reader.flag(root, "plant_expects").value_or(false);
-  for (const char* key : {"bus", "station", "control", "fault", "stimulus", "wire", "switch"})
+  for (const char* key : {"bus", "station", "control", "fault", "stimulus", "wire", "switch", "machine"})
     if (const toml::node* node = root.get(key))
       reader.error(place_of(*node), fmt::format("the plant is in {}: [[{}]] belongs there", name, key));
   test.plant_path = beside(test.file, name);

@@ -8,6 +8,7 @@
 
 #include "tools/cli/files.hpp"
 #include "tools/input/mistakes.hpp"
+#include "tools/machines/open_machines.hpp"
 
 namespace ipos::tools::testing {
 namespace {
@@ -74,6 +75,10 @@ BuiltPlant build_plant(const TestCase& test, Programs& programs, const RunOption
     complete &= images.back().has_value();
   }
   if (!complete) return built;
+  if (const auto unopened = open_machines(file, test.plant_path, programs.allow_fmu()); !unopened.empty()) {
+    built.messages += mistakes_text(test.plant_path, unopened, false);
+    return built;
+  }
   const uint32_t speed = test.speed != 0 ? test.speed : options.speed;
   std::optional<vm::Rates> rates;
   if (speed != 0) rates = vm::Rates{{speed, speed, speed}};

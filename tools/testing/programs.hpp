@@ -28,6 +28,7 @@ class Programs {
 
   // A source or an image. `unit` is null where the source decides.
   std::shared_ptr<const Program> load(const std::string& path, const stdlib::UnitType* unit);
+  bool allow_fmu() const { return flags_.allow_fmu; }
 
  private:
   Program make(const std::string& path, const stdlib::UnitType* unit) const;

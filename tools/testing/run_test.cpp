@@ -22,6 +22,7 @@ void run(Script& script, runtime::Plant& plant, const RunOptions& options) {
       script.give_up(fmt::format("time: the test takes more than {} s on the clock and is at {} of virtual time; "
                                  "--time-limit allows more",
                                  options.limit_s, time_text(plant.now())));
+    for (const runtime::PlantError& failure : plant.machines().failures()) script.give_up(failure.text, failure.place);
     if (options.sample) options.sample(now);
     return script.passed(now) && !interrupted();
   };

@@ -251,10 +251,13 @@ Time Script::last_time() const {
 
 // --- its end ---
 
-void Script::give_up(std::string text) {
+void Script::give_up(std::string text, std::optional<FilePlace> in_plant) {
   if (over() || stopped_) return;
   stopped_ = true;
-  add_finding(waiting_, std::move(text));
+  add_finding(in_plant ? nullptr : waiting_, std::move(text));
+  if (!in_plant) return;
+  result_.findings.back().file = test_.plant_path;
+  result_.findings.back().place = *in_plant;
 }
 
 void Script::finish() {

@@ -37,8 +37,9 @@ class Script {
   bool passed(Time now);
   void go_on();
 
-  // What follows makes no sense any more: it takes too long, or is interrupted.
-  void give_up(std::string text);
+  // What follows makes no sense any more: it takes too long, or is interrupted; or something of the plant file has failed,
+  // which stands there.
+  void give_up(std::string text, std::optional<FilePlace> in_plant = {});
 
  private:
   enum class Stage : uint8_t {

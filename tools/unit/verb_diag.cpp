@@ -57,7 +57,7 @@ void add_diag(cli::Verb& app) {
       .one_of({"parameters", "pd", "rs485", "can", "fieldbus"})
       .separated_by(',')
       .one_each();
-  add_compile_options(verb, flags->compile);
+  add_plant_options(verb, flags->compile);
   verb.footer("Example:\n  ipos diag examples/sbus-line/line.toml inverter1 --page can");
   verb.runs([flags] { return diagnose(*flags); });
 }

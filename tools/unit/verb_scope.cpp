@@ -202,7 +202,7 @@ void add_scope(cli::Verb& app) {
   verb.option("--limit", flags->limit, "give up after this time, default 60s").check(check_time, "TIME");
   verb.option("-o", flags->out, "file to write; - is standard output");
   add_link_options(verb, flags->link, false);
-  add_compile_options(verb, flags->compile);
+  add_plant_options(verb, flags->compile);
   verb.footer(
       "Example:\n  ipos scope plant.toml saw --channels P000,P005 --trigger \"P000>500 rpm\" --before 100");
   verb.runs([flags] { return is_plant(flags->where) ? scope_of_plant(*flags) : scope_at_port(*flags); });

@@ -32,6 +32,7 @@ struct WatchFlags {
   bool once = false;
   std::string format = "text";
   std::vector<std::string> include_dirs;
+  bool allow_fmu = false;
 
   LiveForm form() const {
     if (format == "json") return LiveForm::Json;
@@ -41,6 +42,7 @@ struct WatchFlags {
   CompileFlags compile() const {
     CompileFlags flags;
     flags.include_dirs = include_dirs;
+    flags.allow_fmu = allow_fmu;
     return flags;
   }
 };
@@ -124,6 +126,7 @@ void add_watch(cli::Verb& app) {
   verb.option("--count", flags->count, "end after so many rows; default: go on until Ctrl-C").at_least(1);
   verb.flag("--once", flags->once, "read once, a line for each value");
   verb.option("--format", flags->format, "text, or json: an object for each row").one_of({"text", "json"});
+  verb.flag("--allow-fmu", flags->allow_fmu, "let the FMUs run that are machines of the plant; they are programs of others");
   verb.option("-I", flags->include_dirs, "folder of include files, for PROGRAM.IPC");
   verb.footer("Example:\n  ipos watch /dev/ttyUSB0 1 P000 H420 lTrDataLow@SCOM1.IPC:hex --every 200ms");
   verb.runs([flags] { return is_plant(flags->link.port) ? watch_plant(*flags) : watch_port(*flags); });

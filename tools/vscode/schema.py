@@ -139,6 +139,9 @@ class Table:
         return [""]
 
     def subtable(self, key):
+        if self.name == "machine":  # its keys are those of an FMU
+            kinds = ["boolean", "number"] if key == "parameters" else "string"
+            return {"type": "object", "additionalProperties": {"type": kinds}}
         forms = ['kind = "conveyor"\n'] if key == "machine" else [""]  # the kind that takes all keys
         table = Table(self.reader, f"{self.name}.{key}", forms, self.before + self.head() + "\n", many=False)
         found = table.schema() if known(table.ask("", f"{PROBE} = 1")) else None
