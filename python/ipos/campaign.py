@@ -12,12 +12,13 @@ mpi4py), each task runs one shard, so that whoever does the work needs `ipos` on
 from __future__ import annotations
 
 import json
-import shutil
 import subprocess
 import tempfile
 from concurrent.futures import Executor
 from pathlib import Path
 from typing import Any, Optional, Union
+
+from ._program import find_program
 
 _GOOD = (0, 1)  # 1: a case failed, which its row tells
 
@@ -31,7 +32,7 @@ class CampaignError(Exception):
 
 
 def _ipos(program: Optional[str], *arguments: str) -> str:
-    found = program or shutil.which("ipos")
+    found = program or find_program()
     if found is None:
         raise CampaignError("the program ipos is not on the PATH", 127)
     done = subprocess.run([found, "campaign", *arguments], capture_output=True, text=True)

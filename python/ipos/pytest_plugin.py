@@ -11,8 +11,6 @@ Several files, or seeds=range(10), make a test of each. Without the marker the p
 
 from __future__ import annotations
 
-import os
-import shutil
 import subprocess
 from pathlib import Path
 from typing import Any, Iterator, Optional
@@ -20,6 +18,7 @@ from typing import Any, Iterator, Optional
 import pytest
 
 from ._library import PlantError
+from ._program import find_program
 from .plant import Plant
 
 _ENDING = ".test.toml"
@@ -176,14 +175,7 @@ class TestFailure(Exception):
 
 def _program(config: pytest.Config) -> Optional[str]:
     """The program that runs the tests; None: there is none here."""
-    named = config.getoption("--ipos-program") or os.environ.get("IPOS")
-    if named:
-        return named
-    here = Path(__file__).resolve().parent
-    for place in (here / "ipos-program", *(here.parent.parent / "build" / build / "tools" / "ipos" for build in ("release", "dev"))):
-        if place.is_file():
-            return str(place)
-    return shutil.which("ipos")
+    return config.getoption("--ipos-program") or find_program()
 
 
 class TestFile(pytest.File):

@@ -262,7 +262,10 @@ void ParameterStore::tell(uint16_t index) {
 }
 
 std::vector<std::string> ParameterStore::tell_settings() {
-  for (const stdlib::Unsimulated& one : stdlib::unsimulated(unit_)) tell(one.parameter->index);
+  // In the order of the indices; of one there may be several rows.
+  const stdlib::Parameter* last = nullptr;
+  for (const stdlib::Unsimulated& one : stdlib::unsimulated(unit_))
+    if (std::exchange(last, one.parameter) != one.parameter) tell(one.parameter->index);
   return take_news();
 }
 

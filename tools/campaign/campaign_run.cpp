@@ -261,8 +261,10 @@ int run(const RunFlags& flags) {
   const bool one = !flags.name.empty() || !flags.factors.empty() || flags.middle;
   if (one == !flags.out.empty())
     throw Failure(kUsage, "a campaign is run with --out DIR for its results, one case of it with --case, --factor or --middle");
-  if (!one) shard_of(flags.shard);  // before long work
-  catch_interrupts();
+  if (!one) {
+    shard_of(flags.shard);  // before long work
+    catch_interrupts();     // one case is simply ended
+  }
   const Campaign campaign = read_campaign(flags.file, flags.compile);
   return one ? run_one(flags, campaign) : ShardRun(flags, campaign).run();
 }

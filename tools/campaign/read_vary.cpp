@@ -94,7 +94,14 @@ bool read_target(PlantReader& reader, const toml::table& table, FactorOutline& o
     factor.target = Target::Parameter;
     factor.key = name;
     const stdlib::UnitType* unit = reader.unit_of(factor.station);
-    if (unit == nullptr || stdlib::parameter_table(*unit).find(name) != nullptr) return unit != nullptr;
+    if (unit == nullptr) return false;
+    const stdlib::ParameterTable& table_of_unit = stdlib::parameter_table(*unit);
+    const stdlib::Parameter* row = table_of_unit.find(name);
+    // The plant may call it by another of its names.
+    for (const auto& one : stations)
+      for (const runtime::ParameterSetting& setting : one.parameters)
+        if (one.name == factor.station && row != nullptr && table_of_unit.find(setting.parameter) == row) factor.key = setting.parameter;
+    if (row != nullptr) return true;
     return reader.error(place_of(*table.get("parameter")), fmt::format("{} has no parameter {}", unit->name, name)), false;
   }
   factor.target = Target::Stimulus;
@@ -180,6 +187,7 @@ void read_values(PlantReader& reader, const toml::table& table, FactorOutline& o
 }  // namespace
 
 std::string toml_of(const toml::node& node) {
+  if (const auto* text = node.as_string()) return json_text(nlohmann::json(text->get()));  // the same in both, and on one line
   std::ostringstream out;
   node.visit([&](const auto& value) { out << value; });
   return out.str();

@@ -102,6 +102,17 @@ TEST_F(CampaignVerb, EachCaseIsTheRunOfItsPlant) {
   }
 }
 
+// 8470 is P130 by its index.
+TEST_F(CampaignVerb, AParameterIsFoundByAnyOfItsNames) {
+  std::string plant = kPlant;
+  folder_.write("p.toml", plant.replace(plant.find("P881"), 0, "8470 = 700\n"));
+  run("out");
+  const json row = rows("out/shard-1-of-1.jsonl").front();
+  const std::string shown = campaign({"show", "c.campaign.toml", row["case"], "--plant"}).out;
+  EXPECT_EQ(shown.find("P130"), std::string::npos) << shown;
+  EXPECT_NE(shown.find("8470 = " + row["factors"]["a.P130"].dump() + "\n"), std::string::npos) << shown;
+}
+
 TEST_F(CampaignVerb, ShowPrintsTheCommandThatReplaysACase) {
   run("out");
   const json row = rows("out/shard-1-of-1.jsonl").front();
