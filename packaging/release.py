@@ -79,7 +79,7 @@ def make_native(out: Path) -> None:
     run("cmake", "--build", NATIVE, "--target", "all", "ipos_static", "ipos_vsix", "ipos_firmware_package")
     shutil.copy(NATIVE / "static/ipos", out / f"ipos-{version()}-linux-x86_64")
     pack_again(NATIVE / f"ipos-firmware-{version()}.zip", out / f"ipos-firmware-{version()}.zip")
-    shutil.copy(NATIVE / f"ipos.ipos.{version()}.pack", out)
+    pack_again(NATIVE / f"ipos.ipos.{version()}.pack", out / f"ipos.ipos.{version()}.pack")
     pack_again(NATIVE / "vscode/ipos.vsix", out / f"ipos-{version()}.vsix")
     shutil.copy(out / f"ipos-{version()}.vsix", NATIVE / "vscode/ipos.vsix")  # the Debian package has the same one
     run("cpack", "--config", NATIVE / "CPackConfig.cmake", "-B", NATIVE / "pack")

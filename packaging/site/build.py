@@ -163,7 +163,7 @@ def main() -> None:
         lay_out(source, page is not None, package is not None)
         shutil.rmtree(out, ignore_errors=True)
         # Hashes of Python's own are the order of some of its lists.
-        subprocess.run([os.environ.get("SPHINX", "/usr/bin/sphinx-build"), "-q", "-W", "--keep-going", "-j", "auto", "-b", "html",
+        subprocess.run([os.environ.get("SPHINX", "/usr/bin/sphinx-build"), "-q", "-W", "--keep-going", "-b", "html",
                         "-d", f"{work}/trees", str(source), str(out)], check=True, env={**os.environ, "PYTHONHASHSEED": "0"})
     (out / ".buildinfo").unlink()
     stand_alone(out / "_static")
