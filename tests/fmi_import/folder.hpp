@@ -33,6 +33,31 @@ class FmuFolder {
   TemporaryFolder folder_;
 };
 
+// A drive whose shaft the spring turns: 1500 W at 1400 rpm are 10.23 Nm, and what it was told of its inertia is J1.
+inline constexpr const char* kDriven = R"([[station]]
+name = "u"
+unit = "md60a"
+[station.inputs]
+DI00 = 1
+DI01 = 1
+DI03 = 1
+[station.analog]
+AI1 = "10 V"
+[station.load]
+driven = true
+inertia = 207
+brake = false
+[[machine]]
+name = "spring"
+fmu = "{}"
+[machine.inputs]
+torque = "u.torque"
+[machine.outputs]
+speed = "u.shaft_speed"
+energy = "u.H300"
+angle = "u.H301"
+)";
+
 // The values of signals in the trace of a run, a row a millisecond, which stands in front in ms.
 std::vector<std::vector<double>> traced(const FmuFolder& folder, const std::string& plant, const std::string& signals,
                                         const std::string& length);

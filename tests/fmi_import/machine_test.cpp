@@ -96,31 +96,6 @@ TEST(FmuMachine, ParametersAreSetBeforeItBegins) {
   for (const auto& row : rows) EXPECT_NEAR(row[1], closed_form(row[0] / 1000, false) / 2, 0.501);
 }
 
-// A drive whose shaft the spring turns: 1500 W at 1400 rpm are 10.23 Nm, and what it was told of its inertia is J1.
-constexpr const char* kDriven = R"([[station]]
-name = "u"
-unit = "md60a"
-[station.inputs]
-DI00 = 1
-DI01 = 1
-DI03 = 1
-[station.analog]
-AI1 = "10 V"
-[station.load]
-driven = true
-inertia = 207
-brake = false
-[[machine]]
-name = "spring"
-fmu = "{}"
-[machine.inputs]
-torque = "u.torque"
-[machine.outputs]
-speed = "u.shaft_speed"
-energy = "u.H300"
-angle = "u.H301"
-)";
-
 double rad_per_s(double rpm) { return rpm * 2 * 3.14159265358979 / 60; }
 
 TEST(FmuMachine, ADriveAndTwoMassesAreStableAndKeepTheirEnergy) {

@@ -148,5 +148,20 @@ TEST_F(FmuTrouble, ATestThatAnFmuEndsFailsAtItsLine) {
   EXPECT_TRUE(contains(result.out + result.err, "the FMU crashed: a bad address")) << result.out << result.err;
 }
 
+// A case of a campaign has its own FMU; one that it ends has failed, at its line.
+TEST_F(FmuTrouble, CasesOfACampaignHaveTheirMachines) {
+  folder_.write_trouble(kFine);
+  folder_.write("c.campaign.toml",
+                fmt::format("plant = \"p.toml\"\nfor = \"200ms\"\n[[vary]]\nkey = \"machine.wheel.parameters.what\"\nvalues = [{}, {}]\n"
+                            "[[measure]]\nname = \"steps\"\nsignal = \"u.H300\"\ntake = \"final\"\n",
+                            int{kFine}, int{kCrash}));
+  EXPECT_EQ(folder_.run({"campaign", "run", "c.campaign.toml", "--out", "a"}).exit_code, 65);
+  EXPECT_EQ(folder_.run({"campaign", "run", "c.campaign.toml", "--out", "b", "--allow-fmu"}).exit_code, 1);
+  const CommandResult merged = folder_.run({"campaign", "merge", "b", "--csv", "-"});
+  EXPECT_TRUE(contains(merged.out, "0,200")) << merged.out << merged.err;
+  EXPECT_TRUE(contains(merged.out, "1,99") || contains(merged.out, "1,100")) << merged.out;
+  EXPECT_EQ(left_behind(), 0U);
+}
+
 }  // namespace
 }  // namespace ipos::tests

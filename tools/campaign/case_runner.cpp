@@ -103,6 +103,8 @@ void CaseRunner::run_plant(const Levels& levels, Outcome& outcome) {
       outcome.failed.push_back(fmt::format("{}: {} of {} is {} at {}, expected {}", place_text(file, one.place), one.signal.name,
                                            one.signal.station, result.actual, testing::time_text(one.at), one.equals));
   }
+  for (const runtime::PlantError& failure : plant.machines().failures())
+    outcome.failed.push_back(fmt::format("{}: {}", place_text(file, failure.place), failure.text));
   for (const runtime::Station* station : plant.unforeseen_faults())
     outcome.failed.push_back(fmt::format("{}: has fault F{:02}", station->config().name, station->fault()));
   watch.take_measures(outcome.measures);

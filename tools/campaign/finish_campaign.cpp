@@ -38,6 +38,8 @@ void add_plant(const std::string& path, const runtime::PlantFile& plant, const C
     if (!station.program.empty()) add_program(beside(path, station.program), station.unit, compile, texts);
     if (const auto memory = station.nvram.empty() ? std::nullopt : try_read_file(station.nvram)) texts[station.nvram] = *memory;
   }
+  for (const runtime::MachineConfig& machine : plant.machines)
+    if (const auto fmu = try_read_file(beside(path, machine.fmu))) texts[beside(path, machine.fmu)] = *fmu;
 }
 
 // A key that names a program stands for what is in it.

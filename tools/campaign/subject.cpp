@@ -10,6 +10,7 @@
 #include "tools/cli/files.hpp"
 #include "tools/input/mistakes.hpp"
 #include "tools/input/plant_input.hpp"
+#include "tools/machines/open_machines.hpp"
 #include "tools/running/real_time_run.hpp"
 #include "tools/test_file/read_tests.hpp"
 
@@ -97,6 +98,7 @@ Prepared Subject::prepare(const Levels& levels) {
     runtime::PlantFileResult read = runtime::read_plant_file(edit.text());
     // What the file says where: lines that a key has added are not in it.
     for (runtime::Expectation& one : read.plant.expectations) one.place.line = edit.original_line(one.place.line);
+    if (read.errors.empty()) read.errors = open_machines(read.plant, campaign_.plant, programs_.allow_fmu());
     refuse(campaign_.plant, read.errors);
     prepared.plant = std::move(read.plant);
     use_memories(campaign_.plant, prepared.plant);

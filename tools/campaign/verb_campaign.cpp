@@ -24,7 +24,7 @@ std::string in_shell(const std::string& text) {
 
 void add_campaign_options(cli::Verb& verb, CampaignFlags& flags) {
   verb.option("FILE", flags.file, "NAME.campaign.toml").required();
-  add_compile_options(verb, flags.compile);
+  add_plant_options(verb, flags.compile);
 }
 
 std::string duration_text(double seconds) {
