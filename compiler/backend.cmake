@@ -11,8 +11,8 @@ ipos_layer(compiler
   SOURCES ${compiler_sources}
   USES frontend asm isa image stdlib
   LIBS fmt::fmt)
-file(GLOB timing_sources CONFIGURE_DEPENDS timing/*.cpp)
-ipos_layer(timing FOLDERS compiler/timing SOURCES ${timing_sources} USES asm image isa stdlib LIBS fmt::fmt)
-ipos_not_hot(ipos_timing)
+file(GLOB analysis_sources CONFIGURE_DEPENDS analysis/*.cpp)
+ipos_layer(analysis FOLDERS compiler/analysis SOURCES ${analysis_sources} USES asm image isa stdlib LIBS fmt::fmt)
+ipos_not_hot(ipos_analysis)
 ipos_not_hot(ipos_asm BUSY)
 ipos_not_hot(ipos_compiler SIZE 20 BUSY)

@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "compiler/compile.hpp"
-#include "compiler/timing/timing.hpp"
+#include "compiler/analysis/timing.hpp"
 #include "tests/generated/program_generator.hpp"
 #include "tests/generated/source_text.hpp"
 #include "tests/generated/toolchain.hpp"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "compiler/timing/timing.hpp"
+#include "compiler/analysis/timing.hpp"
 
 namespace ipos::tools {
 namespace {

@@ -1,5 +1,5 @@
 // Strongly connected parts after Tarjan; turns by the variable that a loop counts with.
-#include "compiler/timing/loops.hpp"
+#include "compiler/analysis/loops.hpp"
 
 #include <algorithm>
 #include <set>
@@ -7,7 +7,7 @@
 
 #include "vm/isa/effects.hpp"
 
-namespace ipos::compiler::timing {
+namespace ipos::compiler::analysis {
 
 using vm::Opcode;
 
@@ -261,4 +261,4 @@ std::optional<Turns> turns_of(const Graph& graph, const Values& values, const st
   return Counter(graph, values, loop, head).least();
 }
 
-}  // namespace ipos::compiler::timing
+}  // namespace ipos::compiler::analysis

@@ -1,6 +1,6 @@
 // The longest way through each function: its commands in order, each loop as one of them with as many turns as it can have. A
 // function that another one calls costs there what it costs by itself.
-#include "compiler/timing/timing.hpp"
+#include "compiler/analysis/timing.hpp"
 
 #include <fmt/format.h>
 
@@ -8,12 +8,12 @@
 #include <map>
 #include <set>
 
-#include "compiler/timing/loops.hpp"
+#include "compiler/analysis/loops.hpp"
 
 namespace ipos::compiler {
 namespace {
 
-using namespace timing;
+using namespace analysis;
 using vm::Opcode;
 
 constexpr uint64_t kTooMany = uint64_t{1} << 40;  // commands that no one waits for: half a year at one a millisecond
@@ -254,7 +254,7 @@ std::vector<FunctionTiming> function_timings(const vm::Image& image, uint32_t va
       const auto [known, is_new] = tasks.try_emplace(command, root.task);
       if (!is_new && rate(root.task) < rate(known->second)) known->second = root.task;
     }
-    if (root.entry != 0 && root.task == 1) interrupts.insert(root.entry);
+    if (root.how == Root::How::Interrupt) interrupts.insert(root.entry);
   }
   std::map<uint8_t, Analysis> analyses;
   std::vector<FunctionTiming> all;

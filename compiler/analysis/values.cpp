@@ -1,17 +1,16 @@
 // Intervals by abstract interpretation: each way through the commands is followed until nothing new comes. Functions have no
 // variables of their own, so a call is a jump there and one back. An interval that grows again and again stops at a constant of
 // the program, which is where its loops end.
-#include "compiler/timing/values.hpp"
+#include "compiler/analysis/values.hpp"
 
 #include <deque>
 #include <set>
 
 #include "stdlib/language_tables.hpp"
 #include "stdlib/system_variables.hpp"
-#include "vm/isa/blocks.hpp"
 #include "vm/isa/effects.hpp"
 
-namespace ipos::compiler::timing {
+namespace ipos::compiler::analysis {
 namespace {
 
 using vm::Flow;
@@ -19,8 +18,7 @@ using vm::Instruction;
 using vm::Opcode;
 
 constexpr Interval kAny{};
-constexpr int64_t kDataVariables = 8;  // of what a pointer in a structure leads to; MLDATA is the longest
-constexpr int kPatience = 3;           // visits before an interval is widened
+constexpr int kPatience = 3;  // visits before an interval is widened
 
 Interval of(int64_t least, int64_t most) {
   // Arithmetic wraps.
@@ -72,14 +70,37 @@ bool is_system_variable(uint32_t variable) {
   return variable >= stdlib::kFirstSystemVariable && variable <= stdlib::kLastSystemVariable;
 }
 
-// The members of a structure that say where the unit or the bus writes, as offsets.
-std::vector<uint32_t> pointers_of(std::string_view type) {
-  std::vector<uint32_t> all;
-  if (const stdlib::Structure* structure = stdlib::find_structure(type))
+// The members of structures that say where the unit or the bus writes, and how many variables from there on.
+struct Pointer {
+  std::string_view type, member;
+  int64_t variables;
+};
+constexpr Pointer kPointers[] = {
+    {"SCREC", "DPointer", 2}, {"MOVLNK", "DPointer", 8}, {"GSCAM", "DestVar", 1}, {"GSCAM_EXT", "CamDestination", 1}};
+
+struct Target {
+  uint32_t offset;  // of the member
+  int64_t variables;
+};
+std::vector<Target> pointers_of(std::string_view type) {
+  std::vector<Target> all;
+  for (const Pointer& pointer : kPointers) {
+    if (pointer.type != type) continue;
+    const stdlib::Structure& structure = *stdlib::find_structure(type);
+    for (uint32_t n = 0; n < structure.members.size(); ++n)
+      for (const std::string_view name : structure.members[n])
+        if (name == pointer.member) all.push_back({n, pointer.variables});
+  }
+  return all;
+}
+
+// Which of its variables the host writes: of a structure with a result that one, else all.
+Span host_target(const vm::BlockInfo& block, uint32_t first) {
+  if (const stdlib::Structure* structure = stdlib::find_structure(block.type))
     for (uint32_t n = 0; n < structure->members.size(); ++n)
       for (const std::string_view name : structure->members[n])
-        if (name == "DPointer" || name == "DestVar" || name == "CamDestination") all.push_back(n);
-  return all;
+        if (name == "Result" || name == "IntEvent") return {first + n, first + n};
+  return {first, static_cast<int64_t>(first) + block.variables - 1};
 }
 
 }  // namespace
@@ -130,14 +151,14 @@ Values::Values(const Graph& graph, uint32_t variables) : graph_(graph), variable
         const Opcode opcode = graph.commands[command].code.opcode;
         if (vm::coding(opcode).flow != Flow::System) continue;
         for (Task& any : tasks_) {
-          for (const vm::BlockInfo& block : vm::block_table()) {
-            if (block.opcode != opcode) continue;
+          for (const vm::BlockInfo* row : blocks_of(graph.commands[command].code)) {
+            const vm::BlockInfo& block = *row;
             const auto first = static_cast<uint32_t>(graph.commands[command].code.operands[block.operand]);
             if (block.use == vm::BlockUse::Both || block.use == vm::BlockUse::Lasting)
-              more = share({{first, static_cast<int64_t>(first) + block.variables - 1}}, any.shared) || more;
-            for (const uint32_t member : pointers_of(block.type)) {
-              const Interval to = read(writer, state, first + member);
-              more = share({{to.least, to.most + kDataVariables - 1}}, any.shared) || more;
+              more = share({host_target(block, first)}, any.shared) || more;
+            for (const Target& target : pointers_of(block.type)) {
+              const Interval to = read(writer, state, first + target.offset);
+              more = share({{to.least, to.most + target.variables - 1}}, any.shared) || more;
             }
           }
           if (opcode == Opcode::MovCom) more = share({{0, variables - 1}}, any.shared) || more;  // its layout is on no page read
@@ -183,11 +204,8 @@ std::vector<Span> Values::writes(const Task& task, const State& state, size_t nu
   if (vm::coding(code.opcode).flow != Flow::System) return spans;
   if (code.opcode == Opcode::Memorize && code.operands[0] == 2) spans.push_back({0, variables_ - 1});  // LOAD ALL
   if (code.opcode == Opcode::MovCom) spans.push_back({0, variables_ - 1});
-  for (const vm::BlockInfo& block : vm::block_table()) {
-    if (block.opcode != code.opcode || block.use == vm::BlockUse::Read) continue;
-    const int64_t first = code.operands[block.operand];
-    spans.push_back({first, first + block.variables - 1});
-  }
+  for (const vm::BlockInfo* block : blocks_of(code))
+    if (block->use != vm::BlockUse::Read) spans.push_back(host_target(*block, static_cast<uint32_t>(code.operands[block->operand])));
   return spans;
 }
 
@@ -414,4 +432,4 @@ bool Values::is_shared(size_t command, uint32_t variable) const {
   return false;
 }
 
-}  // namespace ipos::compiler::timing
+}  // namespace ipos::compiler::analysis

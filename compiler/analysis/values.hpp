@@ -8,9 +8,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "compiler/timing/graph.hpp"
+#include "compiler/analysis/graph.hpp"
 
-namespace ipos::compiler::timing {
+namespace ipos::compiler::analysis {
 
 struct Interval {
   int64_t least = INT32_MIN;
@@ -82,4 +82,4 @@ class Values {
   std::vector<Task> tasks_;
 };
 
-}  // namespace ipos::compiler::timing
+}  // namespace ipos::compiler::analysis

@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include "compiler/timing/graph.hpp"
-#include "compiler/timing/values.hpp"
+#include "compiler/analysis/graph.hpp"
+#include "compiler/analysis/values.hpp"
 
-namespace ipos::compiler::timing {
+namespace ipos::compiler::analysis {
 
 // The parts of these commands that are strongly connected, so that none leads back to one before it. Ways to `head` do not count.
 std::vector<std::vector<size_t>> parts_in_order(const Graph& graph, const std::vector<size_t>& commands, size_t head);
@@ -22,4 +22,4 @@ struct Turns {
 // `loop` goes round at `head`. Counts up or down by a constant, compared with what stays as it is meanwhile.
 std::optional<Turns> turns_of(const Graph& graph, const Values& values, const std::vector<size_t>& loop, size_t head);
 
-}  // namespace ipos::compiler::timing
+}  // namespace ipos::compiler::analysis

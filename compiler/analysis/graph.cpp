@@ -1,30 +1,28 @@
 // The graph is that of verified code: every label leads to a command.
-#include "compiler/timing/graph.hpp"
+#include "compiler/analysis/graph.hpp"
 
 #include <algorithm>
 #include <unordered_map>
+#include <utility>
 
 #include "compiler/asm/disassembler.hpp"
 
-namespace ipos::compiler::timing {
+namespace ipos::compiler::analysis {
 
 using vm::Flow;
 using vm::Opcode;
 
-namespace {
-
-// What a command starts beside its own task; 0: nothing.
-uint8_t started_task(const vm::Instruction& code) {
-  switch (code.opcode) {
-    case Opcode::Task: return 3;
-    case Opcode::Task2:
-    case Opcode::VarInt: return 2;
-    case Opcode::SetInt: return 1;
-    default: return 0;
-  }
+std::vector<const vm::BlockInfo*> blocks_of(const vm::Instruction& code) {
+  const vm::Coding& row = vm::coding(code.opcode);
+  int32_t keyword = vm::kAnyKeyword;
+  for (size_t operand = 0; operand < row.operand_count; ++operand)
+    if (row.kinds[operand] == vm::OperandKind::Keyword) keyword = code.operands[operand];
+  std::vector<const vm::BlockInfo*> all;
+  for (size_t operand = 0; operand < row.operand_count; ++operand)
+    if (row.kinds[operand] == vm::OperandKind::Variable)
+      for (const vm::BlockInfo& block : vm::blocks_of(code.opcode, operand, keyword)) all.push_back(&block);
+  return all;
 }
-
-}  // namespace
 
 Graph::Graph(const vm::Image& image) {
   std::unordered_map<uint32_t, size_t> at;
@@ -40,7 +38,7 @@ Graph::Graph(const vm::Image& image) {
     if (std::find(roots.begin(), roots.end(), root) == roots.end()) roots.push_back(root);
     add_entry(root.entry);
   };
-  if (!commands.empty()) add_root({0, 1});
+  if (!commands.empty()) add_root({});
   for (size_t n = 0; n < commands.size(); ++n) {
     Command& command = commands[n];
     const vm::Coding& row = vm::coding(command.code.opcode);
@@ -52,13 +50,29 @@ Graph::Graph(const vm::Image& image) {
           label = found->second;
     command.calls = row.flow == Flow::Call || row.flow == Flow::SystemCall;
     command.ends = row.flow == Flow::Return || row.flow == Flow::End;
-    if (command.calls || row.flow == Flow::Jump || row.flow == Flow::Branch) command.label = label;
+    command.label = label;
     if (!command.ends && row.flow != Flow::Jump && following != at.end()) command.next = following->second;
     if (command.calls && label != kNone) add_entry(label);
-    if (const uint8_t task = started_task(command.code); task != 0 && label != kNone) add_root({label, task});
+    if (const auto started = started_by(n)) {
+      add_root(*started);
+      command.started = std::exchange(command.label, kNone);  // the flow does not go there
+    }
   }
   for (const vm::FunctionEntry& function : image.functions)
     if (const auto found = at.find(function.address); found != at.end()) add_entry(found->second);
+}
+
+std::optional<Root> Graph::started_by(size_t number) const {
+  const Command& command = commands[number];
+  const size_t label = command.started != kNone ? command.started : command.label;
+  if (label == kNone) return std::nullopt;
+  switch (command.code.opcode) {
+    case Opcode::Task: return Root{label, 3, Root::How::Task};
+    case Opcode::Task2: return Root{label, 2, Root::How::Task};
+    case Opcode::VarInt: return Root{label, 2, Root::How::Interrupt};
+    case Opcode::SetInt: return Root{label, 1, Root::How::Interrupt};
+    default: return std::nullopt;
+  }
 }
 
 std::vector<size_t> Graph::successors(size_t number) const {
@@ -93,4 +107,4 @@ std::vector<size_t> reach(const Graph& graph, size_t entry, bool with_calls) {
 std::vector<size_t> Graph::function_at(size_t entry) const { return reach(*this, entry, false); }
 std::vector<size_t> Graph::reached_from(size_t entry) const { return reach(*this, entry, true); }
 
-}  // namespace ipos::compiler::timing
+}  // namespace ipos::compiler::analysis
