@@ -262,10 +262,12 @@ void ParameterStore::tell(uint16_t index) {
 }
 
 std::vector<std::string> ParameterStore::tell_settings() {
-  // In the order of the indices; of one there may be several rows.
-  const stdlib::Parameter* last = nullptr;
-  for (const stdlib::Unsimulated& one : stdlib::unsimulated(unit_))
-    if (std::exchange(last, one.parameter) != one.parameter) tell(one.parameter->index);
+  auto slot = slots_.cbegin();
+  for (const stdlib::Unsimulated& one : stdlib::unsimulated(unit_)) {  // in the order of the indices, as the slots
+    while (slot->parameter != one.parameter) ++slot;
+    const int32_t value = read(*slot);
+    if (one.applies(value) && told_.emplace(one.parameter->index, one.row).second) news_.push_back(one.text(value));
+  }
   return take_news();
 }
 

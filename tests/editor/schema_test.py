@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The schemas of tools/vscode are what the readers of ipos say, and take all plants and tests of the examples.
+"""The schemas of tools/vscode are what the readers of ipos say, and take all plants, tests and campaigns of the examples.
 
 Usage: schema_test.py IPOS PROJECT
 """
@@ -20,13 +20,13 @@ def main():
     except ImportError:
         print("the examples are not tried: there is no jsonschema or no tomllib here")
         return bad
-    roots = {kind: json.loads((schemas / f"{kind}.schema.json").read_text()) for kind in ("plant", "test")}
+    roots = {kind: json.loads((schemas / f"{kind}.schema.json").read_text()) for kind in ("plant", "test", "campaign")}
     files = jsonschema.RefResolver(schemas.as_uri() + "/", None)  # a test refers to tables of a plant
     validators = {kind: jsonschema.Draft7Validator(root, resolver=files) if kind == "test" else
                   jsonschema.Draft7Validator(root) for kind, root in roots.items()}
     taken = 0
     for path in sorted((root / "examples").rglob("*.toml")):
-        kind = "test" if path.name.endswith(".test.toml") else "plant"
+        kind = {".test": "test", ".campaign": "campaign"}.get(Path(path.stem).suffix, "plant")
         content = tomllib.loads(path.read_text())
         if kind == "plant" and "station" not in content:
             continue

@@ -259,6 +259,7 @@ Campaign read_campaign(const std::string& path, const CompileFlags& compile) {
       if (control.as<runtime::GatewayConfig>() != nullptr) reader.gateway_names.insert(control.name);
     }
     reader.for_each_table(*root, "vary", [&](const toml::table& table) { read_vary(reader, table, campaign); });
+    reader.for_each_table(*root, "fault", [](const toml::table&) {});  // the form; reading takes keys out of them
     if (toml::array* faults = root->get_as<toml::array>("fault"))
       for (toml::node& fault : *faults)
         if (toml::table* table = fault.as_table()) read_campaign_fault(reader, *table, campaign);

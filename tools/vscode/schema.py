@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""JSON schemas of plants and tests, for editors without `ipos lsp`.
+"""JSON schemas of plants, tests and campaigns, for editors without `ipos lsp`.
 
-    schema.py IPOS FOLDER            writes plant.schema.json and test.schema.json
+    schema.py IPOS FOLDER            writes plant.schema.json, test.schema.json and campaign.schema.json
     schema.py IPOS FOLDER --check    fails where they differ from what is there
 
 A table that both files have in the same form stands in the $defs of plant.schema.json; test.schema.json refers to it.
@@ -18,18 +18,25 @@ from pathlib import Path
 
 PROBE = "ipos_probe"
 VALUES = {"string": f'"{PROBE}"', "integer": "7", "number": "7.5", "boolean": "true", "array": "[7]"}
+BUS = '[[bus]]\nname = "b"\nkind = "profibus"\nbaud = 500000\n'
+STATION = '[[station]]\nname = "s"\nunit = "md60a"\n'
+CAMPAIGN_PLANT = "of_campaign.toml"
 SIGNALS = {"variable": "H0", "parameter": "P130", "input": "DI00", "analog": "AI1"}
 
 
 class Reader:
     """What ipos says of a text, by line."""
 
-    def __init__(self, ipos, folder, test):
-        self.ipos, self.file, self.test = ipos, Path(folder) / ("p.test.toml" if test else "p.toml"), test
+    ENDINGS = {"plant": "toml", "test": "test.toml", "campaign": "campaign.toml"}
+
+    def __init__(self, ipos, folder, kind):
+        self.ipos, self.kind, self.file = ipos, kind, Path(folder) / f"p.{self.ENDINGS[kind]}"
+        self.test = kind == "test"
+        (Path(folder) / CAMPAIGN_PLANT).write_text(f"{BUS}{STATION}")
 
     def errors(self, text):
         self.file.write_text(text)
-        how = ["test", self.file] if self.test else ["run", self.file, "--for", "1ms"]
+        how = {"plant": ["run", self.file, "--for", "1ms"], "test": ["test", self.file], "campaign": ["campaign", "plan", self.file]}[self.kind]
         out = subprocess.run([self.ipos, *how], capture_output=True, text=True, cwd=self.file.parent)
         found = re.findall(r"^\S+\.toml:(\d+):\d+: error: (.*)$", out.stdout + out.stderr, re.M)
         return [(int(line), message) for line, message in found]
@@ -100,6 +107,8 @@ class Table:
             needs |= {row.split(" ")[0] for row in form.split("\n") if row and "kind" not in row}
             if self.name in ("stimulus", "step"):
                 needs -= set(SIGNALS)
+            if self.name == "vary":
+                needs -= {"values"}  # or from, to and steps
             self.required = needs if self.required is None else self.required & needs
             for key in keys:
                 value = self.value(form, key)
@@ -110,6 +119,8 @@ class Table:
         return out
 
     def value(self, form, key):
+        if key == "band":
+            return {"type": ["number", "string"]}  # a text that no probe is
         form = "".join(row + "\n" for row in form.split("\n") if row and not row.startswith(key + " "))
         said = {kind: self.ask(form, f"{key} = {value}") for kind, value in VALUES.items()}
         if any("write [[" in message for message in said["integer"]):
@@ -167,8 +178,11 @@ def parameters(ipos):
 def forms_of(reader, key):
     """Rows with which a table is of another form than without."""
     forms = [""]
-    bus = '[[bus]]\nname = "b"\nkind = "profibus"\nbaud = 500000\n'
-    station = '[[station]]\nname = "s"\nunit = "md60a"\n'
+    if reader.kind == "campaign":
+        forms = {"vary": [f'{row}\n' for row in ('station = "s"\nparameter = "P130"', 'station = "s"\nvariable = "H0"', 'key = "bus.b.baud"')],
+                 "measure": [f'signal = "s.speed"\ntake = "{take}"\n' for take in ("max", "settling", "time")],
+                 "fault": ['bus = "b"\n']}[key]
+        return forms, f'plant = "{CAMPAIGN_PLANT}"\n'
     if key == "station":
         forms = [f'unit = "{unit}"\n' for unit in units(reader.ipos)]
     if key == "stimulus":
@@ -178,29 +192,33 @@ def forms_of(reader, key):
     if key == "fault":
         forms += ['bus = "b"\n']
     if key == "step":
-        messages = [message for _, message in reader.errors(station + "[[step]]\n")]
+        messages = [message for _, message in reader.errors(STATION + "[[step]]\n")]
         forms = [f'{word} = "{SIGNALS.get(word, PROBE)}"\n' for message in messages if "[[step]] needs one of" in message
                  for word in message.split("one of ")[1].split(", ")]
-    return forms, bus + (station if reader.test and key in ("step", "expect", "case") else "")
+    return forms, BUS + (STATION if reader.test and key in ("step", "expect", "case") else "")
 
 
-def root_schema(ipos, folder, test):
-    reader = Reader(ipos, folder, test)
+TITLES = {"plant": "A plant of ipos run", "test": "A test of ipos test", "campaign": "A campaign of ipos campaign"}
+
+
+def root_schema(ipos, folder, kind):
+    reader = Reader(ipos, folder, kind)
     keys = known(message for _, message in reader.errors(f"{PROBE} = 1\n"))
     properties = {}
     for key in keys:
-        said = [message for _, message in reader.errors(f"{key} = [7]\n")]
+        before = f'plant = "{CAMPAIGN_PLANT}"\n' if kind == "campaign" and key not in ("plant", "tests") else ""
+        said = [message for _, message in reader.errors(f"{before}{key} = [7]\n")]
         if any("one for each" in message or f"[[{key}]]" in message for message in said):
             forms, before = forms_of(reader, key)
             items = {"type": "object"} if key == "case" else Table(reader, key, forms, before).schema()
             properties[key] = {"type": "array", "items": items}
         else:
-            table = Table(reader, "", [""])
+            table = Table(reader, "", [""], before)
             table.head = lambda: ""
             properties[key] = table.value("", key)
     return {
         "$schema": "http://json-schema.org/draft-07/schema#",
-        "title": "A test of ipos test" if test else "A plant of ipos run",
+        "title": TITLES[kind],
         "type": "object",
         "additionalProperties": False,
         "properties": properties,
@@ -232,8 +250,8 @@ def main():
     ipos, target, check = str(Path(sys.argv[1]).resolve()), Path(sys.argv[2]), "--check" in sys.argv
     different = 0
     with tempfile.TemporaryDirectory() as folder:
-        schemas = {name: root_schema(ipos, folder, name == "test") for name in ("plant", "test")}
-        share(*schemas.values())
+        schemas = {kind: root_schema(ipos, folder, kind) for kind in TITLES}
+        share(schemas["plant"], schemas["test"])
         for name, schema in schemas.items():
             text = text_of(schema) + "\n"
             file = target / f"{name}.schema.json"

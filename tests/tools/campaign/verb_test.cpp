@@ -304,6 +304,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"plant = \"p.toml\"\n[[measure]]\nsignal = \"a.nothing\"\ntake = \"max\"\n", "3:10", "nothing"},
         Mistake{"plant = \"p.toml\"\n[[measure]]\nsignal = \"a.speed\"\ntake = \"most\"\n", "4:8", "take is one of"},
         Mistake{"plant = \"p.toml\"\n[[measure]]\nsignal = \"a.speed\"\ntake = \"time\"\n", "2:1", "above, below, equals"},
+        Mistake{"plant = \"p.toml\"\n[fault]\nbus = \"sbus\"\n", "2:1", "write [[fault]]"},
         Mistake{"plant = \"p.toml\"\n[[fault]]\nbus = \"sbus\"\nkind = \"drop\"\nseeds = \"9..1\"\n", "5:9", "seeds"}));
 
 }  // namespace
