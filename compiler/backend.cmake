@@ -14,5 +14,11 @@ ipos_layer(compiler
 file(GLOB analysis_sources CONFIGURE_DEPENDS analysis/*.cpp)
 ipos_layer(analysis FOLDERS compiler/analysis SOURCES ${analysis_sources} USES asm image isa stdlib LIBS fmt::fmt)
 ipos_not_hot(ipos_analysis)
+file(GLOB mutants_sources CONFIGURE_DEPENDS mutants/*.cpp)
+ipos_layer(mutants
+  FOLDERS compiler/mutants
+  SOURCES ${mutants_sources}
+  USES compiler isa image stdlib
+  LIBS fmt::fmt)
 ipos_not_hot(ipos_asm BUSY)
 ipos_not_hot(ipos_compiler SIZE 20 BUSY)

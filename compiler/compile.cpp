@@ -38,12 +38,12 @@ Compilation compile(const std::string& name, const std::string& path, std::strin
   if (out.unit == nullptr)
     out.unit = includes_b_headers(*out.sources) ? &stdlib::unit_with(stdlib::Trait::NewVariables) : &stdlib::usual_unit();
   if (out.diagnostics.has_errors()) return out;
-  auto program = check(tree, *out.unit, *out.sources, out.diagnostics, options.is_unit_value);
-  if (!program) return out;
-  auto generated = generate(*program, *out.unit, *out.sources, options.atomic, out.diagnostics);
+  out.program = check(tree, *out.unit, *out.sources, out.diagnostics, options.is_unit_value);
+  if (!out.program) return out;
+  auto generated = generate(*out.program, *out.unit, *out.sources, options.atomic, out.diagnostics);
   if (!generated) return out;
   (out.diagnostics.has_errors() ? out.too_long : out.image) = std::move(generated->image);
-  out.map = std::move(program->map);
+  out.map = std::move(out.program->map);
   for (checked::MapEntry& row : generated->temporaries)
     out.map.insert(std::upper_bound(out.map.begin(), out.map.end(), row,
                                     [](const checked::MapEntry& a, const checked::MapEntry& b) {

@@ -36,6 +36,7 @@ struct Compilation {
   std::optional<vm::Image> image;          // set when there are no errors
   std::optional<vm::Image> too_long;       // instead of the image when that is the only error: for listings
   std::vector<checked::MapEntry> map;      // with either; temporaries included
+  std::optional<checked::Program> program;  // what it was generated from, its map apart; set when it is checked without errors
 };
 
 // `name` is how messages call the file, `path` where it was read from ("" for standard input).

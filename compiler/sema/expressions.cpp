@@ -179,7 +179,7 @@ ExprPtr ExpressionChecker::value_of(const ast::Binary& node, const ast::Expr& ex
     ExprPtr zero = make_expr(expr.span, checked::Constant{0});
     return make_expr(expr.span, checked::Binary{BinaryOp::Ne, right, zero});
   }
-  return make_expr(expr.span, checked::Binary{node.op, left, right});
+  return make_expr(expr.span, checked::Binary{node.op, left, right, node.op_span});
 }
 
 ExprPtr ExpressionChecker::value_of(const ast::Conditional& node, const ast::Expr& expr) {
@@ -216,7 +216,7 @@ ExprPtr ExpressionChecker::assign(const ast::Assign& node, std::optional<Object>
   const int32_t* known = constant_value(right);
   if (!node.op && known != nullptr && left->place.offset == nullptr)
     context_.stores.push_back({static_cast<uint32_t>(left->place.number), *known, span});
-  return make_expr(span, checked::Assign{node.op, left->place, right});
+  return make_expr(span, checked::Assign{node.op, left->place, right, node.op_span});
 }
 
 ExprPtr ExpressionChecker::copy_structure(const ast::Assign& node, Object target, Span span) {

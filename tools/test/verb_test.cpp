@@ -22,6 +22,7 @@
 #include "tools/cli/verbs.hpp"
 #include "tools/coverage/collector.hpp"
 #include "tools/coverage/coverage_reports.hpp"
+#include "tools/test/mutate.hpp"
 #include "tools/test_file/read_tests.hpp"
 #include "tools/testing/artifacts.hpp"
 #include "tools/testing/changes.hpp"
@@ -42,6 +43,7 @@ struct TestFlags {
   bool list = false;
   bool last_failed = false;
   bool watch = false;
+  bool mutate = false;
   uint32_t durations = 0;
   std::string format;
   SuiteOptions suite;
@@ -103,6 +105,9 @@ void check_flags(const TestFlags& flags) {
     throw Failure(kUsage, "the messages of programs are part of the report; --json has them");
   if (is_standard_output(flags.junit) + is_standard_output(flags.tap) + is_standard_output(flags.json) > 1)
     throw Failure(kUsage, "only one report can go to standard output");
+  if (flags.mutate && (flags.watch || flags.suite.fail_fast || flags.suite.repeat > 1 || flags.durations != 0 ||
+                       !flags.tap.empty() || !flags.artifacts.empty() || !flags.coverage.empty()))
+    throw Failure(kUsage, "--mutate has no --watch, --fail-fast, --repeat, --durations, --tap, --artifacts or --coverage");
   output_ending("--junit", flags.junit);
   output_ending("--tap", flags.tap);
   output_ending("--json", flags.json);
@@ -186,6 +191,8 @@ int run_once(const TestFlags& flags, std::vector<TestCase>& tests) {
                fmt::join(flags.paths, " "));
     return kFindings;
   }
+  if (flags.mutate)
+    return mutate(tests, {flags.suite, flags.list, for_github(flags), root_of_github(), flags.junit, flags.json, flags.html});
   if (flags.list) {
     for (const TestCase& test : tests)
       fmt::print("{}\n", compiler::printable(fmt::format("{}  {}:{}", test.name, test.file, test.place.line)));
@@ -250,7 +257,9 @@ void add_test(cli::Verb& app) {
   verb.flag("--last-failed", flags->last_failed,
             "only those that did not pass when they were run last in this folder");
   verb.flag("--watch", flags->watch, "run them again whenever a file of theirs changes, until Ctrl-C");
-  verb.flag("--list", flags->list, "tell the names and run nothing");
+  verb.flag("--mutate", flags->mutate,
+            "plant mistakes into the programs, one at a time, and tell those that no test notices");
+  verb.flag("--list", flags->list, "tell the names and run nothing; with --mutate: what would be planted");
   verb.option("--jobs,-j", flags->suite.jobs, "tests at a time; default: the number of cores")
       .between(1U, 256U);
   verb.option("--seed", flags->suite.run.seed, "moves the seeds of faults that strike by chance");
@@ -266,10 +275,10 @@ void add_test(cli::Verb& app) {
   verb.option("--durations", flags->durations,
               "at the end, so many of the tests that took longest on the clock");
   verb.option("--format", flags->format,
-              "github also writes a line for each failure that GitHub shows beside the source; default: "
+              "github also writes a line for each failure that GitHub shows beside the source; json is --json -; default: "
               "github where "
               "GITHUB_ACTIONS is true, else text")
-      .one_of({"text", "github"});
+      .one_of({"text", "github", "json"});
   verb.option("--junit", flags->junit, "write a report as JUnit XML; - is standard output");
   verb.option("--tap", flags->tap, "write a report as TAP 13");
   verb.option("--json", flags->json, "write a report as JSON");
@@ -278,9 +287,10 @@ void add_test(cli::Verb& app) {
               "folder for plot, trace, log of the buses and journal of every test that fails");
   add_coverage_option(verb, flags->coverage);
   add_plant_options(verb, flags->suite.compile);
-  verb.footer("Example:\n  ipos test examples --junit report.xml");
+  verb.footer("Examples:\n  ipos test examples --junit report.xml\n  ipos test --mutate examples/hoist");
   verb.runs([flags] {
     if (flags->paths.empty()) flags->paths.emplace_back(".");
+    if (flags->format == "json") flags->json = "-";
     return run(*flags);
   });
 }

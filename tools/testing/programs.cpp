@@ -31,11 +31,19 @@ Program read_image(const std::string& path, const std::string& bytes) {
 std::shared_ptr<const Program> Programs::load(const std::string& path, const stdlib::UnitType* unit) {
   const std::lock_guard lock(mutex_);
   auto& known = known_[{path, unit}];
-  if (!known) known = std::make_shared<const Program>(make(path, unit));
+  if (!known) known = std::make_shared<const Program>(make({path, unit}));
   return known;
 }
 
-Program Programs::make(const std::string& path, const stdlib::UnitType* unit) const {
+compiler::Compilation compile_for_test(const ProgramName& name, std::string text, const CompileFlags& flags) {
+  compiler::CompileOptions options = options_of(flags);
+  if (name.second != nullptr) options.unit = name.second;
+  options.is_unit_value = nullptr;  // a test names errors and warnings
+  return compiler::compile(name.first, name.first, std::move(text), options);
+}
+
+Program Programs::make(const ProgramName& name) const {
+  const std::string& path = name.first;
   Program program;
   const auto text = load_file(path);
   if (!text) {
@@ -43,10 +51,7 @@ Program Programs::make(const std::string& path, const stdlib::UnitType* unit) co
     return program;
   }
   if (!is_source(path)) return read_image(path, *text);
-  compiler::CompileOptions options = options_of(flags_);
-  if (unit != nullptr) options.unit = unit;
-  options.is_unit_value = nullptr;  // a test names errors and warnings
-  compiler::Compilation compiled = compiler::compile(path, path, *text, options);
+  compiler::Compilation compiled = compile_for_test(name, *text, flags_);
   const auto& all = compiled.diagnostics.all();
   program.messages = compiler::render_text(all, *compiled.sources, false);
   for (const compiler::Diagnostic& diagnostic : all) {

@@ -22,20 +22,29 @@ struct Program {
   std::vector<ExpectedDiagnostic> diagnostics;  // in the order of lines; 1 for the program as a whole
 };
 
+// The program of a station: a source or an image, and its unit, which is null where the source decides.
+using ProgramName = std::pair<std::string, const stdlib::UnitType*>;
+using KnownPrograms = std::map<ProgramName, std::shared_ptr<const Program>>;
+
+// As tests compile a source.
+compiler::Compilation compile_for_test(const ProgramName& name, std::string text, const CompileFlags& flags);
+
 class Programs {
  public:
-  explicit Programs(CompileFlags flags) : flags_(std::move(flags)) {}
+  // `known` are not looked for any more.
+  explicit Programs(CompileFlags flags, KnownPrograms known = {}) : flags_(std::move(flags)), known_(std::move(known)) {}
 
-  // A source or an image. `unit` is null where the source decides.
   std::shared_ptr<const Program> load(const std::string& path, const stdlib::UnitType* unit);
   bool allow_fmu() const { return flags_.allow_fmu; }
+  // When nobody loads any more.
+  const KnownPrograms& known() const { return known_; }
 
  private:
-  Program make(const std::string& path, const stdlib::UnitType* unit) const;
+  Program make(const ProgramName& name) const;
 
   CompileFlags flags_;
   std::mutex mutex_;
-  std::map<std::pair<std::string, const stdlib::UnitType*>, std::shared_ptr<const Program>> known_;
+  KnownPrograms known_;
 };
 
 }  // namespace ipos::tools::testing

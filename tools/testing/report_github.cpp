@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "tools/cli/xml_text.hpp"
+#include "tools/testing/report_words.hpp"
 #include "tools/testing/reports.hpp"
 
 namespace ipos::tools::testing {
@@ -19,24 +20,24 @@ std::string escaped(std::string_view text, bool property) {
   return out;
 }
 
-std::string annotation(const std::string& root, const std::string& file, runtime::FilePlace place,
-                       const std::string& title, const std::string& text) {
+}  // namespace
+
+std::string github_annotation(std::string_view weight, const std::string& root, const std::string& file,
+                              runtime::FilePlace place, const std::string& title, const std::string& text) {
   namespace fs = std::filesystem;
   const std::string path =
       root.empty() ? file : fs::absolute(file).lexically_normal().lexically_relative(root).generic_string();
-  return fmt::format("::error file={},line={},col={},title={}::{}\n", escaped(path, true), place.line,
+  return fmt::format("::{} file={},line={},col={},title={}::{}\n", weight, escaped(path, true), place.line,
                      place.column, escaped(title, true), escaped(text, false));
 }
-
-}  // namespace
 
 std::string github_annotations(const TestResult& result, const std::string& root) {
   std::string text;
   if (result.outcome == Outcome::Malformed)
-    text += annotation(root, result.file, result.place, result.name, result.messages);
+    text += github_annotation("error", root, result.file, result.place, result.name, result.messages);
   for (const Finding& finding : result.findings)
     text +=
-        annotation(root, finding.file, finding.place, result.name,
+        github_annotation("error", root, finding.file, finding.place, result.name,
                    finding.note.empty() ? finding.text : fmt::format("{}\n({})", finding.text, finding.note));
   return text;
 }

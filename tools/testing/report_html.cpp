@@ -11,15 +11,15 @@ namespace ipos::tools::testing {
 namespace {
 
 constexpr std::string_view kHead =
-    "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>ipos test</title>\n<style>\n"
+    "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\">"
+    "<title>ipos test</title>\n<style>\n"
     "body { font: 14px sans-serif; margin: 1em; color: #222; }\n"
     "table { border-collapse: collapse; }\n"
     "td, th { padding: 2px 10px; text-align: left; vertical-align: top; border-bottom: 1px solid #ddd; }\n"
     "td.number { text-align: right; font-variant-numeric: tabular-nums; }\n"
     ".ok { color: #006b3c; } .FAILED, .ERROR { color: #C00000; font-weight: bold; }\n"
     "pre { background: #f6f6f6; padding: 6px; overflow-x: auto; }\n"
-    "iframe { width: 100%; height: 720px; border: 1px solid #ddd; }\n"
-    "</style></head><body>\n";
+    "iframe { width: 100%; height: 720px; border: 1px solid #ddd; }\n";
 
 // `folder` is empty without artifacts.
 std::string links(const std::string& folder, const TestResult& result) {
@@ -60,8 +60,12 @@ std::string row(const TestResult& result, const std::string& folder) {
 
 }  // namespace
 
+std::string html_head(std::string_view more_style) {
+  return fmt::format("{}{}</style></head><body>\n", kHead, more_style);
+}
+
 std::string html_report(const std::vector<TestResult>& results, const std::string& artifacts) {
-  std::string text = std::string(kHead) + fmt::format("<h1>{}</h1>\n", xml_text(summary(results)));
+  std::string text = html_head() + fmt::format("<h1>{}</h1>\n", xml_text(summary(results)));
   text +=
       "<table><thead><tr><th>outcome</th><th>test</th><th>checks</th><th>virtual "
       "s</th><th>s</th></tr></thead><tbody>\n";

@@ -15,8 +15,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-void run(Script& script, runtime::Plant& plant, const RunOptions& options) {
+void run(Script& script, runtime::Plant& plant, const RunOptions& options, const TestResult& result) {
   const Clock::time_point ends = Clock::now() + std::chrono::seconds(options.limit_s);
+  const auto is_known = [&] { return options.to_first_finding && !result.findings.empty(); };
   const auto passed = [&](Time now) {
     if (Clock::now() >= ends)
       script.give_up(fmt::format("time: the test takes more than {} s on the clock and is at {} of virtual time; "
@@ -24,9 +25,9 @@ void run(Script& script, runtime::Plant& plant, const RunOptions& options) {
                                  options.limit_s, time_text(plant.now())));
     for (const runtime::PlantError& failure : plant.machines().failures()) script.give_up(failure.text, failure.place);
     if (options.sample) options.sample(now);
-    return script.passed(now) && !interrupted();
+    return script.passed(now) && !interrupted() && !is_known();
   };
-  for (script.begin(); !script.over(); script.go_on()) {
+  for (script.begin(); !script.over() && !is_known(); script.go_on()) {
     // The plant runs up to a time that lies ahead; what happens at its present time may still be to come.
     if (script.due() == plant.now()) {
       plant.queue().run_until(plant.now());
@@ -52,7 +53,7 @@ void carry_out(const TestCase& test, Programs& programs, const RunOptions& optio
     if (options.prepare) collector = options.prepare(*built.plant);
     Script script(test, *built.plant, options.seed, result);
     const auto errors = script.resolve();
-    if (errors.empty()) run(script, *built.plant, options);
+    if (errors.empty()) run(script, *built.plant, options, result);
     built.messages += mistakes_text(test.file, errors, false);
     result.time = built.plant->now();
     if (options.finish) options.finish();

@@ -17,6 +17,7 @@ struct RunOptions {
   uint32_t speed = 0;  // commands per ms of every task where the test does not say; 0: P938 and P939
   uint32_t limit_s = kClockLimit;  // on the clock; a test that takes longer has failed
   uint64_t seed = 0;   // moves the seeds of faults that strike by chance
+  bool to_first_finding = false;  // nothing more is asked than whether it passes
 
   // Called when a plant is built, before its first event: here collectors attach themselves to the machines
   // of its stations. What it returns lives until the test is over, but not longer than the plant. Called

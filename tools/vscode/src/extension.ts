@@ -86,21 +86,21 @@ const configurations: vscode.DebugConfigurationProvider = {
 };
 
 function makeTask(definition: launch.TaskDefinition & vscode.TaskDefinition): vscode.Task {
-  const { command, args } = launch.taskCommand(definition, settings(), "${file}");
+  const { command, args } = launch.taskCommand(definition, settings(), { file: "${file}", folder: "${fileDirname}" });
   const task = new vscode.Task(
     definition,
     vscode.TaskScope.Workspace,
-    `${definition.task} ${definition.file ?? "the open file"}`,
+    `${definition.task} ${definition.file ?? (definition.task === "mutate" ? "the open folder" : "the open file")}`,
     "ipos",
     new vscode.ProcessExecution(command, args),
-    "$ipos",
+    launch.taskMatcher(definition),
   );
   if (definition.task === "build") task.group = vscode.TaskGroup.Build;
   return task;
 }
 
 const tasks: vscode.TaskProvider = {
-  provideTasks: () => [makeTask({ type: "ipos", task: "build" }), makeTask({ type: "ipos", task: "fmt" })],
+  provideTasks: () => (["build", "fmt", "mutate"] as const).map((task) => makeTask({ type: "ipos", task })),
   resolveTask: (task) => makeTask(task.definition as launch.TaskDefinition & vscode.TaskDefinition),
 };
 

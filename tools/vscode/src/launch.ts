@@ -35,15 +35,22 @@ function compileArguments(settings: Settings): string[] {
 }
 
 export interface TaskDefinition {
-  task: "build" | "fmt";
+  task: "build" | "fmt" | "mutate";
   file?: string;
   args?: string[];
 }
 
-export function taskCommand(definition: TaskDefinition, settings: Settings, openFile: string): Command {
-  const file = definition.file ?? openFile;
-  const own = definition.task === "build" ? compileArguments(settings) : [];
-  return { command: settings.path, args: [definition.task, file, ...own, ...(definition.args ?? [])] };
+// `mutate` is of the tests of a folder: what no test notices is a problem in its program.
+export function taskCommand(definition: TaskDefinition, settings: Settings, open: { file: string; folder: string }): Command {
+  const mutate = definition.task === "mutate";
+  const file = definition.file ?? (mutate ? open.folder : open.file);
+  const verb = mutate ? ["test", "--mutate"] : [definition.task];
+  const own = definition.task === "fmt" ? [] : compileArguments(settings);
+  return { command: settings.path, args: [...verb, file, ...own, ...(definition.args ?? [])] };
+}
+
+export function taskMatcher(definition: TaskDefinition): string {
+  return definition.task === "mutate" ? "$ipos-mutate" : "$ipos";
 }
 
 export interface LaunchConfiguration {

@@ -13,7 +13,7 @@ const read = (name: string): string => readFileSync(join(root, name), "utf8");
 
 interface Manifest {
   contributes: {
-    problemMatchers: { pattern: { regexp: string } }[];
+    problemMatchers: { name: string; severity?: string; pattern: { regexp: string } }[];
     debuggers: { type: string; configurationAttributes: { launch: { properties: Record<string, unknown> } } }[];
     taskDefinitions: { properties: { task: { enum: string[] } } }[];
   };
@@ -41,13 +41,19 @@ test("the server takes all settings but the path", () => {
 });
 
 test("tasks name the verb, the file and the settings of the compiler", () => {
-  assert.deepStrictEqual(launch.taskCommand({ task: "build" }, settings, "a.IPC").args, [
+  const open = { file: "a.IPC", folder: "/p" };
+  assert.deepStrictEqual(launch.taskCommand({ task: "build" }, settings, open).args, [
     "build", "a.IPC", "-Iinc", "-DA=1", "-Werror", "--unit", "mdxb", "--atomic",
   ]);
-  assert.deepStrictEqual(launch.taskCommand({ task: "fmt", file: "b.IPC", args: ["--check"] }, settings, "a.IPC").args, [
+  assert.deepStrictEqual(launch.taskCommand({ task: "fmt", file: "b.IPC", args: ["--check"] }, settings, open).args, [
     "fmt", "b.IPC", "--check",
   ]);
-  assert.deepStrictEqual(manifest.contributes.taskDefinitions[0]?.properties.task.enum, ["build", "fmt"]);
+  assert.deepStrictEqual(manifest.contributes.taskDefinitions[0]?.properties.task.enum, ["build", "fmt", "mutate"]);
+  assert.deepStrictEqual(launch.taskCommand({ task: "mutate" }, { ...settings, unit: "", warnings: [], atomic: false }, open).args, [
+    "test", "--mutate", "/p", "-Iinc", "-DA=1",
+  ]);
+  assert.strictEqual(launch.taskMatcher({ task: "build" }), "$ipos");
+  assert.strictEqual(launch.taskMatcher({ task: "mutate" }), "$ipos-mutate");
 });
 
 test("the debugger is ipos dap, for a program or a plant", () => {
@@ -78,6 +84,29 @@ test("the problem matcher reads the messages of ipos build", (context) => {
     });
     assert.ok(found.includes(`${file}|2|10|error|E0201`), stderr);
     assert.ok(found.some((one) => one.includes("|warning|W0206")), stderr);
+  } finally {
+    rmSync(folder, { recursive: true });
+  }
+  return undefined;
+});
+
+test("the problem matcher of mutate reads what no test notices, and nothing else", (context) => {
+  const program = process.env["IPOS_PROGRAM"];
+  if (program === undefined) return context.skip("IPOS_PROGRAM names no ipos");
+  const folder = mkdtempSync(join(tmpdir(), "ipos-vscode-"));
+  try {
+    const file = join(folder, "A.IPC");
+    writeFileSync(file, "long a, b;\nmain()\n{\n    a = 5;\n    b = 6;\n}\n// expect a == 5\n");
+    const { stdout, status } = spawnSync(program, ["test", "--mutate", folder], { encoding: "utf8" });
+    assert.strictEqual(status, 1);
+    const matcher = manifest.contributes.problemMatchers.find((one) => one.name === "ipos-mutate");
+    assert.strictEqual(matcher?.severity, "warning");
+    const pattern = new RegExp(matcher.pattern.regexp);
+    const found = stdout.split("\n").flatMap((line) => {
+      const match = pattern.exec(line);
+      return match === null ? [] : [match.slice(1, 5).join("|")];
+    });
+    assert.deepStrictEqual(found, [`${file}|5|5|removed: b = 6;`, `${file}|5|9|6 became 7`]);
   } finally {
     rmSync(folder, { recursive: true });
   }
