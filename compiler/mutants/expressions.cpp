@@ -128,6 +128,7 @@ int32_t Finder::changed(int32_t value, Role role) {
       return static_cast<int32_t>(value == 0 ? 1U : single ? bits << 1 : bits & (bits - 1));
     }
     case Role::Shift: return value < 31 ? value + 1 : value - 1;
+    case Role::Wait: return value <= 0 ? 1 : *fold(BinaryOp::Mul, value, 2);
     case Role::Divisor:
       if (value == 1 || value == -1) return 2 * value;
       break;
@@ -139,10 +140,18 @@ int32_t Finder::changed(int32_t value, Role role) {
   return value > std::numeric_limits<int32_t>::max() - tenth ? value - tenth : value + tenth;
 }
 
+// In the text of a macro of the program: whatever its first use is for, all have the same mistake.
+int32_t Finder::changed_at(Span span, int32_t value, Role role) {
+  const std::optional<MacroUse> macro = texts_.macro_of(span);
+  if (!macro || macro->built_in) return changed(value, role);
+  return macro_values_.try_emplace({texts_.spelling(span.begin).value, value}, changed(value, role)).first->second;
+}
+
 void Finder::find_in(Expr& expr, checked::Constant& node, Role role) {
   const std::string written = texts_.written(expr.span);
   if (written.starts_with("numof")) return;  // the number of a variable is no constant of the program's author
-  const int32_t other = changed(node.value, role);
+  const int32_t other = changed_at(expr.span, node.value, role);
+  if (other == 0 && role == Role::Divisor) return;
   const bool hex = written.find("0x") == 0 || written.find("0X") == 0;
   const auto number = [hex](int32_t value) { return hex ? fmt::format("{:#x}", static_cast<uint32_t>(value)) : std::to_string(value); };
   const bool literal = !written.empty() && written.find_first_not_of("-0123456789abcdefABCDEFxX") == std::string::npos;
@@ -257,8 +266,9 @@ void Finder::argument(Expr& expr, const checked::SystemCall& node, size_t n) {
   const auto note = [&](Kind kind, int32_t after, std::string text) {
     if (after == before) return;
     arguments[n] = after;
-    add(kind, expr.span, std::move(text),
-        {.exprs = {{&expr, {expr.span, checked::SystemCall{node.opcode, program_.arena.list(arguments)}}}}});
+    checked::SystemCall other = node;
+    other.arguments = program_.arena.list(arguments);
+    add(kind, node.places[n], std::move(text), {.exprs = {{&expr, {expr.span, other}}}});
   };
   if (operand.kind == vm::OperandKind::Bit) {
     const int32_t after = changed(before, Role::Shift);
@@ -269,13 +279,13 @@ void Finder::argument(Expr& expr, const checked::SystemCall& node, size_t n) {
     const vm::KeywordInfo& other = next_keyword(node.opcode, *keyword);
     const bool waits = operand.keyword_set == "go" || operand.keyword_set == "go0";
     note(waits ? Kind::Wait : Kind::Constant, other.value, fmt::format("{} became {}", keyword->constant, other.constant));
-  } else if (operand.kind == vm::OperandKind::Constant && node.opcode == vm::Opcode::WaitK) {
-    const int32_t after = before <= 0 ? 1 : *fold(BinaryOp::Mul, before, 2);
-    note(Kind::Wait, after, fmt::format("a wait of {} ms became one of {} ms", before, after));
   } else if (operand.kind == vm::OperandKind::Constant) {
-    const int32_t after = changed(before, node.opcode == vm::Opcode::InputCall ? Role::Mask : Role::Plain);
-    note(node.opcode == vm::Opcode::InputCall ? Kind::Mask : Kind::Constant, after,
-         fmt::format("{} became {}", before, after));
+    const bool waits = node.opcode == vm::Opcode::WaitK;
+    const bool mask = node.opcode == vm::Opcode::InputCall;
+    const int32_t after = changed_at(node.places[n], before, waits ? Role::Wait : mask ? Role::Mask : Role::Plain);
+    const bool spoken = waits && !texts_.macro_of(node.places[n]);
+    note(waits ? Kind::Wait : mask ? Kind::Mask : Kind::Constant, after,
+         spoken ? fmt::format("a wait of {} ms became one of {} ms", before, after) : fmt::format("{} became {}", before, after));
   }
 }
 

@@ -52,11 +52,11 @@ void Finder::add(Kind kind, Span span, std::string text, Edits edits) {
   const std::optional<MacroUse> macro = texts_.macro_of(span);
   Location at = texts_.use(span.begin);
   if (macro) {
-    const bool whole = macro->built_in && kind == Kind::Condition;  // DI10 became !DI10
-    if (!whole) text = fmt::format("{}: {}", macro->name, text);
+    const bool named = text.starts_with(macro->name);  // DI10 became !DI10
+    if (!named) text = fmt::format("{}: {}", macro->name, text);
     if (!macro->built_in)
       at = texts_.spelling(span.begin);
-    else if (!whole && !built_in_.insert(macro->use.value).second)
+    else if (kind != Kind::Condition && !built_in_.insert(macro->use.value).second)
       return;
   }
   if (!texts_.is_own(at)) return;

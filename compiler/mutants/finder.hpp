@@ -19,7 +19,7 @@ class Finder {
 
  private:
   // What a constant is used as. A Divisor, and a factor, is not 0.
-  enum class Role : uint8_t { Plain, Truth, Mask, Shift, Divisor };
+  enum class Role : uint8_t { Plain, Truth, Mask, Shift, Divisor, Wait };
   struct Edits {
     std::vector<std::pair<checked::Expr*, checked::Expr>> exprs{};
     std::vector<std::pair<checked::Stmt*, checked::Stmt>> stmts{};
@@ -66,6 +66,7 @@ class Finder {
   void take_off(checked::Expr& expr, const checked::Expr& operand, Kind kind);
   static Role role_beside(checked::BinaryOp op);  // of a constant on its right side
   static int32_t changed(int32_t value, Role role);
+  int32_t changed_at(Span span, int32_t value, Role role);
 
   // variables.cpp
   void swap_variables(checked::Expr& part, bool is_condition);
@@ -78,6 +79,7 @@ class Finder {
   std::vector<Span> heads_;               // of these
   std::vector<Change> changes_;
   std::map<std::pair<uint32_t, std::string>, size_t> in_macros_;  // by place and text: those in the text of a macro
+  std::map<std::pair<uint32_t, int32_t>, int32_t> macro_values_;   // by place and value: what a constant there becomes
   std::set<uint32_t> built_in_;                                    // uses of macros of built-in headers that have a change
 };
 

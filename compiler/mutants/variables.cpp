@@ -71,12 +71,26 @@ class Meaning {
     if (const auto* node = std::get_if<checked::Conditional>(&expr.node))
       return fmt::format("({} ? {} : {})", of(*node->condition), of(*node->then), of(*node->otherwise));
     if (const auto* node = std::get_if<checked::Assign>(&expr.node); node != nullptr && node->target.offset == nullptr)
-      return fmt::format("(H{} {}= {})", renamed(node->target.number), node->op ? ast::spelling(*node->op) : "", of(*node->value));
+      return of(*node);
     return fmt::format("{}", static_cast<const void*>(&expr));  // like itself only, whatever its variables are
   }
 
  private:
   int32_t renamed(int32_t variable) const { return variable == one_ ? other_ : variable == other_ ? one_ : variable; }
+
+  // a = b = 5 gives both the same.
+  std::string of(const checked::Assign& node) const {
+    if (node.op) return fmt::format("(H{} {}= {})", renamed(node.target.number), ast::spelling(*node.op), of(*node.value));
+    std::vector<int32_t> targets{renamed(node.target.number)};
+    const Expr* value = node.value;
+    for (const auto* inner = std::get_if<checked::Assign>(&value->node);
+         inner != nullptr && !inner->op && inner->target.offset == nullptr; inner = std::get_if<checked::Assign>(&value->node)) {
+      targets.push_back(renamed(inner->target.number));
+      value = inner->value;
+    }
+    std::sort(targets.begin(), targets.end());
+    return fmt::format("(H{} = {})", fmt::join(targets, " = H"), of(*value));
+  }
 
   std::string of(const checked::Binary& node) const {
     std::vector<std::string> sides;

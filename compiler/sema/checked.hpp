@@ -56,7 +56,7 @@ struct CopyBlock { uint16_t target; uint16_t source; uint16_t count; };
 struct Call { size_t function; };
 struct FunctionRef { size_t function; };
 using Argument = std::variant<int32_t, ExprPtr, FunctionRef>;      // in the order of the command's operands
-struct SystemCall { vm::Opcode opcode; std::span<const Argument> arguments; };
+struct SystemCall { vm::Opcode opcode; std::span<const Argument> arguments; std::span<const Span> places; };  // of each argument
 
 struct Expr {
   Span span;

@@ -64,8 +64,10 @@ class SystemCallChecker {
     const vm::OpcodeInfo* row = command();
     for (const Given& given : given_) good = block(row->opcode, given) && good;
     if (!good) return nullptr;
-    return expressions_.make_expr(span_,
-                                  checked::SystemCall{row->opcode, context_.program.arena.list(arguments_)});
+    std::vector<Span> places;
+    for (const ast::Expr* argument : call_.arguments) places.push_back(argument->span);
+    Arena& arena = context_.program.arena;
+    return expressions_.make_expr(span_, checked::SystemCall{row->opcode, arena.list(arguments_), arena.list(places)});
   }
 
  private:

@@ -103,6 +103,8 @@ TEST_F(Operators, SignsAndSteps) {
                  "5:5: removed: b = ~a;\n5:5: b and a swapped\n5:9: ~a became a\n");
   expect_noticed(head + "    b = a * -3;\n}\n// expect b == -210\n// expect a == 70\n",
                  "5:5: removed: b = a * -3;\n5:5: b and a swapped\n5:11: * became /\n5:13: -3 became 3\n");
+  // Both take the same value, whichever comes first.
+  EXPECT_EQ(planted(head + "    a = b = 6;\n}\n// expect a == 6\n"), "5:5: removed: a = b = 6;\n5:13: 6 became 7\n");
   expect_noticed(head + "    a++;\n    --b;\n}\n// expect a == 71\n// expect b == -1\n",
                  "5:5: removed: a++;\n5:5: ++ became --\n6:5: removed: --b;\n6:5: -- became ++\n");
 }
@@ -131,12 +133,12 @@ TEST_F(Operators, Masks) {
                  "5:5: removed: b = a & 0x6;\n5:5: b and a swapped\n5:11: & became |\n5:13: 0x6 became 0x4\n");
   expect_noticed(head + "    b |= 0x80000000;\n    _BitSet(b, 3);\n}\n// expect b == -2147483640\n",
                  "5:5: removed: b |= 0x80000000;\n5:7: |= became &=\n5:10: 0x80000000 became 0x40000000\n"
-                 "6:5: removed: _BitSet(b, 3);\n6:5: bit 3 became bit 4\n");
+                 "6:5: removed: _BitSet(b, 3);\n6:16: bit 3 became bit 4\n");
 }
 
 TEST_F(Operators, Waits) {
   expect_noticed("long b;\nmain()\n{\n    _Wait(10);\n    b = 5;  // equivalent: given\n}\n// expect b == 0 at 8ms\n// expect b == 5 at 15ms\n",
-                 "4:5: removed: _Wait(10);\n4:5: a wait of 10 ms became one of 20 ms\n");
+                 "4:5: removed: _Wait(10);\n4:11: a wait of 10 ms became one of 20 ms\n");
   // A loop with nothing in it waits. Without its ! it does not; without the loop neither, but this has less code.
   expect_noticed("long a, b;\nmain()\n{\n    while (!a);\n    b = 5;  // equivalent: given\n}\n// expect b == 0 at 30ms\n",
                  "4:5: removed: while (!a);\n4:12: !a became a\n");
@@ -144,13 +146,13 @@ TEST_F(Operators, Waits) {
 
 TEST_F(Operators, KeywordsOfSystemFunctions) {
   EXPECT_EQ(planted("#include <constb.h>\nmain()\n{\n    _GoAbs(GO_WAIT, 3000);\n    _AxisStop(AS_RSTOP);\n}\n// expect H5 == 0\n"),
-            "4:5: removed: _GoAbs(GO_WAIT, 3000);\n4:5: GO_WAIT became GO_NOWAIT\n4:5: 3000 became 3300\n"
-            "5:5: removed: _AxisStop(AS_RSTOP);\n5:5: AS_RSTOP became AS_HCTRL\n");
+            "4:5: removed: _GoAbs(GO_WAIT, 3000);\n4:12: GO_WAIT became GO_NOWAIT\n4:21: 3000 became 3300\n"
+            "5:5: removed: _AxisStop(AS_RSTOP);\n5:15: AS_RSTOP became AS_HCTRL\n");
   // Every other word of the set works on another structure.
   EXPECT_EQ(planted("#include <constb.h>\nSSPOSRAMP r;\nmain()\n{\n    _SetSys(SS_POSRAMP, r);\n}\n// expect H5 == 0\n"),
             "5:5: removed: _SetSys(SS_POSRAMP, r);\n");
   EXPECT_EQ(planted("#include <constb.h>\nlong n;\nmain()\n{\n    _SetSys(SS_N11, n);\n}\n// expect H5 == 0\n"),
-            "5:5: removed: _SetSys(SS_N11, n);\n5:5: SS_N11 became SS_N12\n");
+            "5:5: removed: _SetSys(SS_N11, n);\n5:13: SS_N11 became SS_N12\n");
 }
 
 TEST_F(Operators, StatementsCasesAndJumps) {
