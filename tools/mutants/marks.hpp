@@ -1,6 +1,7 @@
 // Marks in sources: `// equivalent: reason` behind a statement says that a mistake in it cannot be seen.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>

@@ -253,14 +253,16 @@ TEST_F(CampaignVerb, TestsCountWithTheirExpectations) {
   }
 }
 
-// Down without waiting: the floor is told too early. The test of the example does not see it, as nobody calls meanwhile.
+// A call on the way down turns the cabin round. The test of the example does not see it, as nobody calls meanwhile.
 TEST_F(CampaignVerb, FindsAMistakeInTheHoistThatItsTestDoesNot) {
   const fs::path hoist = fs::path(IPOS_SOURCE_DIR) / "examples/hoist";
   for (const auto& file : fs::directory_iterator(hoist)) fs::copy(file.path(), folder_.path());
   EXPECT_EQ(campaign({"run", "hoist.campaign.toml", "--out", "good"}).exit_code, 0);
   std::string program = text("HOIST.IPC");
-  const size_t down = program.rfind("_GoAbs(GO_WAIT, GROUND)");
-  folder_.write("HOIST.IPC", program.replace(down, 14, "_GoAbs(GO_NOWAIT"));
+  const std::string down = "_GoAbs(GO_WAIT, GROUND);";
+  folder_.write("HOIST.IPC", program.replace(program.rfind(down), down.size(),
+                                             "_GoAbs(GO_NOWAIT, GROUND);\n            while (ActPos_Mot > GROUND + 10)\n"
+                                             "                if (DI10) _GoAbs(GO_NOWAIT, UPPER);"));
   EXPECT_EQ(run_ipos({"test", "hoist.test.toml"}, folder_.path()).exit_code, 0);
   const auto found = campaign({"run", "hoist.campaign.toml", "--out", "bad"});
   EXPECT_EQ(found.exit_code, 1) << found.out;

@@ -5,6 +5,7 @@
 #include <tinyxml2.h>
 
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "tests/harness/contains.hpp"
@@ -283,6 +284,33 @@ TEST_F(Mutate, TheHeaterOfTheDocumentation) {
                             ":18:13: ++ became -- (no test reaches it)\n" + file + ":19:9: removed: _Wait(100);\n" + file +
                             ":19:15: a wait of 100 ms became one of 200 ms\nscore 38 % (5 of 13 noticed)\n");
   EXPECT_TRUE(contains(read_text(project("docs/guide/testing.md")), "$ ipos test --mutate " + folder + "\n" + result.out + "```\n"));
+}
+
+// The table of docs/inside/checks.md: of each example what is noticed, planted and taken out.
+TEST_F(Mutate, TheTableOfTheExamples) {
+  const CommandResult result = run_ipos({"test", "--mutate", "examples", "--format", "json"}, project(""));
+  const auto report = nlohmann::json::parse(result.out, nullptr, false);
+  ASSERT_FALSE(report.is_discarded()) << result.out << result.err;
+  struct Sums {
+    int noticed = 0, planted = 0, equivalent = 0;
+  };
+  std::map<std::string, Sums> examples;
+  for (const auto& mutant : report["mutants"]) {
+    const std::string file = mutant["file"];  // examples/hoist/HOIST.IPC
+    Sums& sums = examples[file.substr(9, file.find('/', 9) - 9)];
+    const std::string outcome = mutant["outcome"];
+    sums.noticed += outcome == "noticed" ? 1 : 0;
+    sums.equivalent += outcome == "equivalent" ? 1 : 0;
+    sums.planted += outcome == "equivalent" ? 0 : 1;
+  }
+  EXPECT_GE(examples.size(), 21U);
+  const std::string page = read_text(project("docs/inside/checks.md"));
+  for (const auto& [name, sums] : examples) {
+    const std::string row = fmt::format("| `{}` | {} of {} | {} |", name, sums.noticed, sums.planted, sums.equivalent);
+    EXPECT_TRUE(contains(page, row)) << row;
+  }
+  EXPECT_TRUE(contains(page, fmt::format("{} of {} mistakes", report["noticed"].get<int>(), report["planted"].get<int>())))
+      << report["noticed"] << " of " << report["planted"];
 }
 
 // Of what a test takes without a mistake, with room for a busy machine, and never more than the user allows.

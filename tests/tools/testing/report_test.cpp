@@ -341,8 +341,12 @@ TEST(Examples, HaveATestEach) {
   check_junit(read_text(xml));
   for (const auto& entry : fs::recursive_directory_iterator(project("examples"))) {
     const std::string path = entry.path().string();
-    if (!path.ends_with(".toml") || path.ends_with(".test.toml")) continue;
-    EXPECT_TRUE(fs::exists(path.substr(0, path.size() - 5) + ".test.toml")) << path << " has no test";
+    if (!path.ends_with(".toml") || path.ends_with(".test.toml") || path.ends_with(".campaign.toml")) continue;
+    bool tested = fs::exists(path.substr(0, path.size() - 5) + ".test.toml");
+    for (const auto& test : fs::directory_iterator(entry.path().parent_path()))
+      tested = tested || (test.path().string().ends_with(".test.toml") &&
+                          contains(read_text(test.path()), "plant = \"" + entry.path().filename().string() + "\""));
+    EXPECT_TRUE(tested) << path << " has no test";
   }
 }
 
