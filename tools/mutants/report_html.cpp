@@ -42,7 +42,10 @@ std::string section(const std::string& file, const std::vector<Mutant>& mutants,
   std::string text = fmt::format("<h2 id=\"f{}\">{}</h2>\n<p>{}</p>\n<table class=\"source\"><tbody>\n", id, xml_text(file),
                                  score_line(score_of(mutants)));
   uint32_t number = 0;
-  for (const std::string& line : text_lines(try_read_file(file).value_or(""))) text += row(++number, line, of_line[number]);
+  for (const std::string& line : text_lines(try_read_file(file).value_or(""))) {
+    ++number;
+    text += row(number, line, of_line[number]);
+  }
   return text + "</tbody></table>\n";
 }
 

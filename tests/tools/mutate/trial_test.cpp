@@ -259,8 +259,10 @@ TEST_F(Mutate, JUnitAndHtml) {
     failures += one->FirstChildElement("failure") != nullptr ? 1U : 0U;
   EXPECT_EQ(static_cast<int>(failures), suite->IntAttribute("failures"));
   const std::string html = read_text(folder_.path() / "r.html");
-  for (const char* part : {"<h1>score ", "<h2 id=\"f1\">A.IPC</h2>", "<code>    c = 4 &lt; a;</code>", "&lt; became &lt;=",
-                           "(equivalent: &lt;nobody&gt;)"})
+  for (const char* part :
+       {"<h1>score ", "<h2 id=\"f1\">A.IPC</h2>", "<tr class=\"noticed\" title=\"2 noticed\"><td class=\"number\">4</td>",
+        "<code>    c = 4 &lt; a;</code></td></tr>\n<tr class=\"survivor\"><td></td><td class=\"told\">removed: c = 4 &lt; a;</td>",
+        "&lt; became &lt;=", "(equivalent: &lt;nobody&gt;)"})
     EXPECT_TRUE(contains(html, part)) << part << html;
   EXPECT_FALSE(contains(html, "http")) << "it stands alone";
 }
