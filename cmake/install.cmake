@@ -9,6 +9,7 @@ install(TARGETS ipos_embedded ipos_shared ipos_compile ipos_plant EXPORT ipos
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/embed/include/ ${ipos_written_headers}/ ${PROJECT_SOURCE_DIR}/runtime/library/include/
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(TARGETS ipos RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS ipos_fmu LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/ipos)  # for `ipos fmu`
 install(FILES ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 # As Debian's policy wants them (12.5, 12.7): licences of all that is in the package, and what has changed.
 ipos_notices(notices IN deb page plot extension)

@@ -42,13 +42,17 @@ if(WIN32)
 else()
   target_link_options(ipos_plant PRIVATE LINKER:--version-script=${exports} LINKER:--as-needed)
 endif()
-# A wheel has it alone, without what a Debian system has beside it: {fmt} comes out of its headers.
-if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND NOT IPOS_SANITIZE AND NOT IPOS_COVERAGE AND NOT WIN32)
-  target_link_options(ipos_plant PRIVATE -static-libstdc++ -static-libgcc)
-  if(EXISTS /usr/include/fmt/format-inl.h)
-    target_sources(ipos_plant PRIVATE ${PROJECT_SOURCE_DIR}/tools/static/fmt.cpp)
+# A shared library that goes elsewhere, without what a Debian system has beside it: {fmt} comes out of its headers.
+function(ipos_stands_alone target)
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL GNU OR IPOS_SANITIZE OR IPOS_COVERAGE OR WIN32)
+    return()
   endif()
-endif()
+  target_link_options(${target} PRIVATE -static-libstdc++ -static-libgcc)
+  if(EXISTS /usr/include/fmt/format-inl.h)
+    target_sources(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tools/static/fmt.cpp)
+  endif()
+endfunction()
+ipos_stands_alone(ipos_plant)
 set_target_properties(ipos_plant PROPERTIES EXPORT_NAME plant VERSION ${PROJECT_VERSION} LINKER_LANGUAGE CXX
                       SOVERSION ${PROJECT_VERSION_MAJOR} LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib
                       LINK_DEPENDS ${exports})

@@ -67,6 +67,16 @@ Mistakes mistakes_of(const std::string& file, const std::vector<runtime::PlantEr
   return mistakes;
 }
 
+// The image decides where the plant names no unit. Why it cannot run there.
+std::optional<std::string> use_unit(const vm::Image& image, runtime::StationConfig& station) {
+  const stdlib::UnitType* unit = stdlib::find_unit(image.unit);
+  if (unit == nullptr || unit->tasks == 0) return "is for a unit that runs no program";
+  if (station.unit != nullptr && station.unit != unit)
+    return fmt::format("is for unit {}, the station is {}", unit->name, station.unit->name);
+  station.unit = unit;
+  return std::nullopt;
+}
+
 runtime::PlantFile plant_of_program(const std::string& path) {
   runtime::PlantFile plant;
   runtime::StationConfig station;
@@ -124,7 +134,10 @@ tl::expected<Contents, Mistakes> Contents::read(const Source& source) {
   if (source.commands_a_ms != 0)
     contents.rates_ = vm::Rates{{source.commands_a_ms, source.commands_a_ms, source.commands_a_ms}};
   Mistakes of_programs;
-  contents.load_programs(source, errors, of_programs);
+  if (source.given)
+    contents.take_given(*source.given, errors);
+  else
+    contents.load_programs(source, errors, of_programs);
   if (!errors.empty() || !of_programs.empty()) {
     if (!is_program)
       errors = runtime::all_mistakes(contents.file_, std::move(contents.programs_), std::move(errors));
@@ -173,13 +186,22 @@ std::optional<vm::Image> Contents::load_program(const Source& source, runtime::S
     if (!read) return mistake(fmt::format("image {} {}", path, read.error()));
     image = *std::move(read);
   }
-  const stdlib::UnitType* unit = stdlib::find_unit(image.unit);
-  if (unit == nullptr || unit->tasks == 0)
-    return mistake(fmt::format("{} is for a unit that runs no program", path));
-  if (station.unit != nullptr && station.unit != unit)
-    return mistake(fmt::format("{} is for unit {}, the station is {}", path, unit->name, station.unit->name));
-  station.unit = unit;
+  if (auto why = use_unit(image, station)) return mistake(fmt::format("{} {}", path, *why));
   return image;
+}
+
+void Contents::take_given(const std::vector<Source::Given>& given, std::vector<runtime::PlantError>& errors) {
+  programs_.resize(file_.stations.size());
+  for (size_t n = 0; n < file_.stations.size(); ++n) {
+    runtime::StationConfig& station = file_.stations[n];
+    const bool is_there = n < given.size();
+    station.nvram = is_there ? given[n].memory : std::string();
+    if (is_there) programs_[n] = given[n].program;
+    if (programs_[n].has_value() == station.program.empty())
+      errors.push_back({station.place, fmt::format("station '{}': the image and the plant do not belong together", station.name)});
+    else if (const auto why = programs_[n] ? use_unit(*programs_[n], station) : std::nullopt)
+      errors.push_back({station.program_place, fmt::format("station '{}': the image {}", station.name, *why)});
+  }
 }
 
 void Contents::identify(std::string_view text, const Source& source) {

@@ -31,6 +31,12 @@ struct Source {
   std::vector<std::string> include_dirs;
   std::vector<std::string> defines;
   bool write_memory = false;
+  // In place of the files that the plant names, a row a station: its image, and where its memory lies; empty: it has none.
+  struct Given {
+    std::optional<vm::Image> program;
+    std::string memory;
+  };
+  std::optional<std::vector<Given>> given{};
   uint32_t commands_a_ms = 0;  // 0: as P938 and P939 say
   uint64_t seed = 0;
 };
@@ -51,6 +57,7 @@ class Contents {
   void load_programs(const Source& source, std::vector<runtime::PlantError>& errors, Mistakes& of_programs);
   std::optional<vm::Image> load_program(const Source& source, runtime::StationConfig& station,
                                         std::vector<runtime::PlantError>& errors, Mistakes& of_programs);
+  void take_given(const std::vector<Source::Given>& given, std::vector<runtime::PlantError>& errors);
   void identify(std::string_view text, const Source& source);
 
   std::string name_;    // of the plant file in messages

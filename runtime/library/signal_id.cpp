@@ -153,6 +153,17 @@ std::optional<Signal> signal_of(const Plant& plant, const SignalId& id, std::str
   return found.size() == 1 ? std::optional(std::move(found.front())) : std::nullopt;
 }
 
+std::optional<SignalId> id_of(const Plant& plant, const Signal& signal) {
+  const Group group = signal.group == Group::SystemVariable ? Group::Variable : signal.group;
+  const auto& stations = plant.stations();
+  const auto station = std::find_if(stations.begin(), stations.end(), [&](const auto& each) { return each.get() == signal.owner; });
+  if (station == stations.end() || signal.put == nullptr) return std::nullopt;
+  for (const Kind kind : kNamed)
+    if (row_of(kind).group == group)
+      return SignalId{static_cast<uint32_t>(station - stations.begin()), kind, signal.number};
+  return std::nullopt;
+}
+
 std::vector<std::string> signal_names(const Plant& plant, uint32_t number, Kind kind,
                                       std::optional<std::string_view> part) {
   if (const runtime::Gateway* gateway = gateway_of(plant, number)) return gateway_names(*gateway, kind);

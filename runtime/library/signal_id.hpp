@@ -41,6 +41,9 @@ tl::expected<SignalId, std::string> find_id(const runtime::Plant& plant, uint32_
 // Nothing when the plant has none: numbers may come from anywhere. `name` is that of kind Signal.
 std::optional<signals::Signal> signal_of(const runtime::Plant& plant, const SignalId& id, std::string_view name = {});
 
+// Of a signal that can be written; nothing for one that cannot.
+std::optional<SignalId> id_of(const runtime::Plant& plant, const signals::Signal& signal);
+
 // What the station has of this kind; of variables those of the program, member by member, or only the members of the whole
 // `part`.
 std::vector<std::string> signal_names(const runtime::Plant& plant, uint32_t station, Kind kind,
