@@ -2,6 +2,7 @@
 # functions (of which `lib /def:` makes one for Microsoft's linker), its header and the CMake package.
 include(CMakePackageConfigHelpers)
 install(TARGETS ipos_plant EXPORT ipos RUNTIME DESTINATION bin ARCHIVE DESTINATION lib INCLUDES DESTINATION include)
+install(TARGETS ipos_fmu RUNTIME DESTINATION bin OPTIONAL)  # for `ipos fmu`
 install(FILES ${PROJECT_BINARY_DIR}/lib/ipos_plant.def DESTINATION lib)
 install(FILES ${PROJECT_SOURCE_DIR}/runtime/library/include/ipos_plant.h DESTINATION include)
 ipos_notices(notices IN windows-library)

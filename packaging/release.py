@@ -102,7 +102,7 @@ def make_wheel(library: Path, out: Path) -> None:
 def make_windows(out: Path) -> None:
     run("cmake/asmjit_source.sh", BUILD / "windows/asmjit")
     run("cmake", "--preset", "windows", "-DIPOS_JIT=ON")
-    run("cmake", "--build", "--preset", "windows", "--target", "ipos", "ipos_plant")
+    run("cmake", "--build", "--preset", "windows", "--target", "ipos", "ipos_plant", "ipos_fmu")
     program = out / f"ipos-{version()}-windows-x86_64.exe"
     run("x86_64-w64-mingw32-strip", "-o", program, BUILD / "windows/tools/ipos.exe")
     with tempfile.TemporaryDirectory() as folder:

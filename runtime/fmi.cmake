@@ -25,7 +25,7 @@ if(NOT WIN32)  # there the functions say themselves that they are shown
 endif()
 ipos_stands_alone(ipos_fmu)
 target_link_options(ipos_fmu PRIVATE $<$<CONFIG:Release>:-s>)  # FMUs are handed around
-set_target_properties(ipos_fmu PROPERTIES LINKER_LANGUAGE CXX LINK_DEPENDS ${exports}
+set_target_properties(ipos_fmu PROPERTIES LINKER_LANGUAGE CXX LINK_DEPENDS ${exports} NO_SONAME ON
                       LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib
                       ARCHIVE_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
 if(WIN32)

@@ -192,7 +192,8 @@ Status Instance::get(std::span<const uint32_t> references, Types types,
       continue;
     }
     const Variable& variable = variables_.all[references[n] - 1];
-    give(n, variable.value_of(variable.signal.read()));
+    const double value = variable.value_of(variable.signal.read());
+    give(n, variable.type == Type::Real ? value : std::clamp<double>(value, INT32_MIN, INT32_MAX));
   }
   return Status::Ok;
 }
@@ -222,10 +223,8 @@ Status Instance::set(const Variable& variable, double value) {
   if (!in_range || variable.signal.check(sample)) return refuse("is out of range");
   const bool is_driven = variable.signal.group == signals::Group::Drive;  // where the shaft is follows a millisecond later
   if (!is_driven && sample == variable.signal.read()) return Status::Ok;
-  library::Action action;
-  action.signal = library::id_of(session_->plant(), variable.signal).value();
-  action.value = sample;
-  if (const auto refused = session_->perform(std::move(action))) return refuse(*refused);
+  const auto id = library::id_of(session_->plant(), variable.signal).value();
+  if (const auto refused = session_->write(id, variable.signal, sample)) return refuse(*refused);
   return Status::Ok;
 }
 

@@ -17,6 +17,9 @@ class Instance {
   // Does it now. Actions may come from anywhere: one that this plant cannot have seen is refused.
   Refusal perform(const Action& action);
 
+  // Writes a signal of this plant.
+  Refusal set(const signals::Signal& signal, int64_t value) { return actions_.set(signal, value); }
+
   runtime::Plant& plant() { return *plant_; }
   const runtime::Plant& plant() const { return *plant_; }
   std::vector<std::unique_ptr<CanTap>>& can() { return can_; }

@@ -36,6 +36,13 @@ Refusal Session::perform(Action action) {
   return refused;
 }
 
+Refusal Session::write(const SignalId& id, const signals::Signal& signal, int64_t value) {
+  const Time now = plant().now();
+  Refusal refused = instance_->set(signal, value);
+  if (recorded_) record_.push_back({.at = now, .act = Act::Write, .signal = id, .value = value});
+  return refused;
+}
+
 uint32_t Session::add_signal(const SignalId& id, std::string_view name) {
   const auto known = std::find_if(signals_.begin(), signals_.end(),
                                   [&](const Signal& signal) { return signal.id == id && signal.name == name; });

@@ -31,6 +31,8 @@ class Session {
 
   // Does it now and puts it into the record.
   Refusal perform(Action action);
+  // The same for a signal that the caller has found in the plant of now: without looking for it again.
+  Refusal write(const SignalId& id, const signals::Signal& signal, int64_t value);
   uint32_t next_tag() { return ++tags_; }
 
   struct Signal {

@@ -1,6 +1,9 @@
 // Calls in a wrong state, null pointers, wrong references and types: each is an error with a text, and the instance goes on.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "tests/fmi/functions.hpp"
 
 namespace ipos::tests {

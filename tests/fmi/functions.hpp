@@ -6,11 +6,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "compiler/compile.hpp"
 #include "runtime/fmi/package.hpp"
+#include "runtime/library/session.hpp"
 #include "runtime/plant_file/plant_file.hpp"
 #include "tests/harness/reach.hpp"
 

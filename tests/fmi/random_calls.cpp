@@ -1,7 +1,9 @@
 // Bytes choose an instance, a call and what it is given.
 #include "tests/fmi/random_calls.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "tests/fmi/functions.hpp"
 

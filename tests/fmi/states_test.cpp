@@ -1,6 +1,9 @@
 // States of instances: kept, gone back to, as bytes, in another instance.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "tests/fmi/functions.hpp"
 
 namespace ipos::tests {

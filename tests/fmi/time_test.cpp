@@ -1,6 +1,8 @@
 // Steps of any size, the start of time, faults that end a step early, and many instances at once.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <thread>
 
 #include "tests/fmi/functions.hpp"

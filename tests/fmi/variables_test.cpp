@@ -1,6 +1,8 @@
 // What variables signals become: every unit type, every parameter.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "runtime/fmi/variables.hpp"

@@ -65,7 +65,7 @@ def compare(artefact: str, found: set[str], ours: list[str]) -> None:
 
 def compiled(build: Path) -> None:
     system = {"release": "linux"}.get(build.name, build.name)
-    libraries = ["lib/libipos_plant.so", "lib/libipos_compile.so", "lib/libipos.so"]
+    libraries = ["lib/libipos_plant.so", "lib/libipos_fmu.so", "lib/libipos_compile.so", "lib/libipos.so"]
     targets = {"linux": {"linux": ["static/ipos"], "library": libraries, "deb": ["tools/ipos", *libraries]},
                "windows": {"windows": ["tools/ipos.exe"], "windows-library": ["lib/ipos_plant.dll"]}, "web": {"web": ["tools/ipos.js"]}}[system]
     for artefact, made in targets.items():
