@@ -2,7 +2,8 @@
 # library for both. `ipos fmu` puts it into the FMU under the name that its description says.
 ipos_layer(fmi
   FOLDERS runtime/fmi
-  SOURCES fmi/names.cpp fmi/types.cpp fmi/variables.cpp fmi/package.cpp fmi/resources.cpp fmi/instance.cpp fmi/saved.cpp
+  SOURCES fmi/names.cpp fmi/types.cpp fmi/variables.cpp fmi/package.cpp fmi/resources.cpp fmi/instance.cpp fmi/saved.cpp fmi/can_operations.cpp
+          fmi/bus_terminal.cpp
           fmi/component.cpp
   USES library
   LIBS fmt::fmt)

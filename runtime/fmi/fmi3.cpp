@@ -2,6 +2,7 @@
 // interfaces are there and refuse.
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "runtime/fmi/component.hpp"
 
@@ -123,17 +124,48 @@ IPOS_FMI_EXPORT int fmi3GetString(void* instance, const Reference[], size_t coun
 IPOS_FMI_EXPORT int fmi3SetString(void* instance, const Reference[], size_t count, const Text[], size_t) {
   return none(instance, Call::Set, count);
 }
-IPOS_FMI_EXPORT int fmi3GetBinary(void* instance, const Reference[], size_t count, size_t[], const uint8_t*[], size_t) {
-  return none(instance, Call::Get, count);
+// Members of terminals: what is clocked, and the clocks.
+template <typename Do>
+int for_members(void* instance, TerminalMember member, const Reference references[], size_t count, bool has_values, Do action) noexcept {
+  return enter(instance, Call::Clocks, [&](Instance& inside, Component&) {
+    if (count != 0 && (references == nullptr || !has_values)) return inside.fail(kNullPointer);
+    std::vector<BusTerminal*> found;
+    for (size_t n = 0; n < count; ++n) {
+      found.push_back(inside.terminal(references[n], member));
+      if (found.back() == nullptr) return Status::Error;
+    }
+    for (size_t n = 0; n < count; ++n) action(*found[n], n);
+    return Status::Ok;
+  });
 }
-IPOS_FMI_EXPORT int fmi3SetBinary(void* instance, const Reference[], size_t count, const size_t[], const uint8_t* const[], size_t) {
-  return none(instance, Call::Set, count);
+
+IPOS_FMI_EXPORT int fmi3GetBinary(void* instance, const Reference references[], size_t count, size_t sizes[],
+                                  const uint8_t* values[], size_t value_count) {
+  return for_members(instance, TerminalMember::TxData, references, count, sizes != nullptr && values != nullptr && count == value_count,
+                     [&](const BusTerminal& terminal, size_t n) {
+                       sizes[n] = terminal.buffers.out.size();
+                       values[n] = reinterpret_cast<const uint8_t*>(terminal.buffers.out.data());
+                     });
 }
-IPOS_FMI_EXPORT int fmi3GetClock(void* instance, const Reference[], size_t count, bool[]) {
-  return none(instance, Call::Clocks, count);
+IPOS_FMI_EXPORT int fmi3SetBinary(void* instance, const Reference references[], size_t count, const size_t sizes[],
+                                  const uint8_t* const values[], size_t value_count) {
+  bool good = sizes != nullptr && values != nullptr && count == value_count;
+  for (size_t n = 0; good && n < count; ++n) good = sizes[n] == 0 || values[n] != nullptr;
+  return for_members(instance, TerminalMember::RxData, references, count, good, [&](BusTerminal& terminal, size_t n) {
+    terminal.buffers.in.assign(reinterpret_cast<const char*>(values[n]), sizes[n]);
+  });
 }
-IPOS_FMI_EXPORT int fmi3SetClock(void* instance, const Reference[], size_t count, const bool[]) {
-  return none(instance, Call::Clocks, count);
+// Active once for what there is.
+IPOS_FMI_EXPORT int fmi3GetClock(void* instance, const Reference references[], size_t count, bool values[]) {
+  return for_members(instance, TerminalMember::TxClock, references, count, values != nullptr, [&](BusTerminal& terminal, size_t n) {
+    values[n] = !terminal.buffers.out.empty() && !terminal.fetched;
+    terminal.fetched |= values[n];
+  });
+}
+IPOS_FMI_EXPORT int fmi3SetClock(void* instance, const Reference references[], size_t count, const bool values[]) {
+  return for_members(instance, TerminalMember::RxClock, references, count, values != nullptr, [&](BusTerminal& terminal, size_t n) {
+    terminal.buffers.rx_active = values[n];
+  });
 }
 
 IPOS_FMI_EXPORT int fmi3GetFMUState(void* instance, void** state) { return get_state(instance, state); }
@@ -152,7 +184,7 @@ IPOS_FMI_EXPORT int fmi3DeserializeFMUState(void* instance, const uint8_t bytes[
 IPOS_FMI_EXPORT int fmi3EvaluateDiscreteStates(void* instance) {
   return enter(instance, Call::EvaluateDiscreteStates, [](Instance&, Component&) { return Status::Ok; });
 }
-// Nothing waits for it: what was set acts in the millisecond that begins now.
+// Operations that have come are sent on their lines. Values that were set act in the millisecond that begins now.
 IPOS_FMI_EXPORT int fmi3UpdateDiscreteStates(void* instance, bool* again, bool* ends, bool* nominals, bool* states,
                                              bool* next_defined, double* next) {
   return enter(instance, Call::UpdateDiscreteStates, [&](Instance& inside, Component&) {
@@ -161,7 +193,7 @@ IPOS_FMI_EXPORT int fmi3UpdateDiscreteStates(void* instance, bool* again, bool* 
       return inside.fail(kNullPointer);
     *again = *ends = *nominals = *states = *next_defined = false;
     *next = 0;
-    return Status::Ok;
+    return inside.update();
   });
 }
 
@@ -173,7 +205,7 @@ IPOS_FMI_EXPORT int fmi3DoStep(void* instance, double from, double length, bool,
     const Status status = inside.step(from, length, own.returns_early, done);
     if (status != Status::Ok) return status;
     *early = done.early;
-    *event = done.early && own.uses_events;
+    *event = (done.early || done.sends) && own.uses_events;
     *ends = false;
     *reached = inside.time();
     return Status::Ok;

@@ -77,6 +77,8 @@ std::optional<std::string> Instance::open() {
   auto session = library::Session::open(contents_, true);
   if (!session) return session.error().front().text;
   session_ = *std::move(session);
+  terminals_ = version_ == 2 ? std::vector<BusTerminal>() : terminals_of(std::as_const(*session_).plant().file());
+  for (BusTerminal& terminal : terminals_) terminal.begin(*session_);
   return find_variables();
 }
 
@@ -156,8 +158,9 @@ Status Instance::step(double from, double length, bool returns_early, Step& done
     return fail(fmt::format("the communication point is {} s, but the instance stands at {} s", from, time_));
   const double until = from + length;
   if (until - start_ > kLongest) return fail(fmt::format("{} s is beyond what a plant can count", until));
-  done = {until, false};
+  done = {until, false, false};
   run(whole_time(until - start_), returns_early, done);
+  for (BusTerminal& terminal : terminals_) done.sends |= terminal.collect(*session_);
   time_ = done.reached;
   if (logging_) tell_journal();
   return Status::Ok;
@@ -171,6 +174,24 @@ void Instance::tell_journal() {
          fmt::format("{:.6f} s {}{}{}", static_cast<double>(entry.time) * 1e-9 + start_, entry.station,
                      entry.station.empty() ? "" : ": ", entry.text));
   }
+}
+
+BusTerminal* Instance::terminal(uint32_t reference, TerminalMember member) {
+  const size_t first = variables_.all.size() + 1;
+  const size_t place = reference < first ? SIZE_MAX : reference - first;
+  if (place < terminals_.size() * kTerminalMembers && place % kTerminalMembers == static_cast<size_t>(member))
+    return &terminals_[place / kTerminalMembers];
+  fail(fmt::format("value reference {} is nothing of the kind", reference));
+  return nullptr;
+}
+
+Status Instance::update() {
+  for (BusTerminal& terminal : terminals_) {
+    if (std::exchange(terminal.fetched, false)) terminal.buffers.out.clear();
+    if (!std::exchange(terminal.buffers.rx_active, false)) continue;
+    for (const std::string& wrong : terminal.take_in(*session_)) fail(Status::Warning, kWarnings, wrong);
+  }
+  return Status::Ok;
 }
 
 Status Instance::check(std::span<const uint32_t> references, Types types) {

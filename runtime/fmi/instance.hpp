@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "runtime/fmi/bus_terminal.hpp"
 #include "runtime/fmi/package.hpp"
 #include "runtime/library/session.hpp"
 
@@ -34,6 +35,7 @@ inline constexpr const char* kJournal = "journal";
 struct Step {
   double reached = 0;   // the time
   bool early = false;   // a fault has come before the end
+  bool sends = false;   // a terminal has something to be fetched
 };
 
 // A state as it is kept: the record of the plant, and what stands around it.
@@ -69,6 +71,11 @@ class Instance {
   Status get(std::span<const uint32_t> references, Types types, const std::function<void(size_t n, double value)>& give);
   Status set(std::span<const uint32_t> references, Types types, const std::function<double(size_t n)>& value);
 
+  // Terminals of lines: references follow those of the variables, four a terminal. Null: none of this member, and the log says so.
+  BusTerminal* terminal(uint32_t reference, TerminalMember member);
+  // The operations that have come act, and what was fetched is forgotten.
+  Status update();
+
   std::unique_ptr<SavedInstance> save() const;
   Status restore(const SavedInstance& saved);
   std::string to_bytes(const SavedInstance& saved) const;
@@ -97,6 +104,7 @@ class Instance {
   double start_ = 0, time_ = 0;
   std::unique_ptr<library::Session> session_;
   Variables variables_;
+  std::vector<BusTerminal> terminals_;  // none in FMI 2.0
   size_t told_ = 0;  // entries of the journal
 };
 
@@ -106,6 +114,7 @@ struct SavedInstance {
   uint8_t stage = 0;
   double start = 0, time = 0;
   std::vector<uint8_t> plant;
+  std::vector<TerminalBuffers> terminals;
 };
 
 }  // namespace ipos::fmi

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "runtime/bus/log/log_name.hpp"
+#include "runtime/plant_file/outer_port.hpp"
 #include "runtime/plant_file/plant_reader.hpp"
 
 namespace ipos::runtime {
@@ -62,7 +63,7 @@ void read_port(PlantReader& reader, const toml::table& table, BusConfig& config)
   const toml::node* port = table.get("port");
   if (port == nullptr) return;
   config.port_place = place_of(*port);
-  reader.unique(reader.port_names, config.port, "port", config.port_place);
+  if (has_outer_port(config)) reader.unique(reader.port_names, config.port, "port", config.port_place);
 }
 
 void read_bus(PlantReader& reader, const toml::table& table) {

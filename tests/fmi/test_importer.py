@@ -72,6 +72,18 @@ def test_its_files(tmp_path):
     assert "resources/sources/HOIST.IPC" in names and "binaries/x86_64-linux/hoist.so" in names
 
 
+def test_a_line_becomes_a_terminal(tmp_path):
+    (tmp_path / "p.toml").write_text('[[bus]]\nname = "sbus"\nkind = "can"\nport = "fmi"\n'
+                                     '[[bus]]\nname = "rs"\nkind = "rs485"\nport = "fmi"\n')
+    fmu = Fmu(write_fmu(tmp_path / "p.toml", tmp_path / "a.fmu", 3), tmp_path / "u")
+    assert [fmu.variables[f"sbus.{name}"].kind for name in ("Rx_Data", "Tx_Clock")] == ["Binary", "Clock"]
+    assert "rs.Rx_Data" not in fmu.variables
+    names = zipfile.ZipFile(tmp_path / "a.fmu").namelist()
+    assert {"terminalsAndIcons/terminalsAndIcons.xml", "extra/org.fmi-standard.fmi-ls-bus/fmi-ls-manifest.xml"} <= set(names)
+    done = ipos("fmu", tmp_path / "p.toml", "-o", tmp_path / "b.fmu", "--fmi", "2")
+    assert done.returncode == 0 and done.stderr.count("is left out: terminals are of CAN lines, with --fmi 3") == 2
+
+
 def test_the_token_follows_the_content(tmp_path):
     def token(*more):
         path = write_fmu(tmp_path / "p.toml", tmp_path / "p.fmu", 2, *more)

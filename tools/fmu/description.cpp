@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "tools/cli/xml_text.hpp"
+#include "tools/fmu/bus_terminals.hpp"
 
 namespace ipos::tools {
 namespace {
@@ -22,7 +23,8 @@ constexpr std::string_view kTimeUnit = "s";
 // By value reference - 1; 0 is the time, which stands first.
 class Writer {
  public:
-  Writer(const Dialect& dialect, const Variables& variables) : dialect_(dialect), variables_(variables) {}
+  Writer(const Dialect& dialect, const Variables& variables, const std::vector<fmi::BusTerminal>& terminals)
+      : dialect_(dialect), variables_(variables), terminals_(terminals) {}
 
   std::string write(const DescriptionHead& head) {
     line("<?xml version=\"1.0\" encoding=\"UTF-8\"?>");
@@ -42,6 +44,7 @@ class Writer {
     line("  <ModelVariables>");
     write_time();
     for (size_t n = 0; n < variables_.all.size(); ++n) write_variable(variables_.all[n], n + 1);
+    for (size_t n = 0; n < terminals_.size(); ++n) write_terminal(terminals_[n], first_member(n));
     line("  </ModelVariables>");
     write_structure();
     line("</fmiModelDescription>");
@@ -122,6 +125,20 @@ class Writer {
     write_element(head, type_name(variable.type), attributes);
   }
 
+  size_t first_member(size_t terminal) const { return variables_.all.size() + 1 + terminal * fmi::kTerminalMembers; }
+
+  void write_terminal(const fmi::BusTerminal& terminal, size_t first) {
+    using enum fmi::TerminalMember;
+    const auto name = [&](fmi::TerminalMember member) { return xml_attribute(member_name(terminal, member)); };
+    constexpr std::string_view kMime = "mimeType=\"application/org.fmi-standard.fmi-ls-bus.can; version=&quot;1.0.0&quot;\"";
+    line("    <Binary name=\"{}\" valueReference=\"{}\" causality=\"input\" variability=\"discrete\" clocks=\"{}\" {}><Start value=\"\"/></Binary>",
+         name(RxData), first, first + 2, kMime);
+    line("    <Binary name=\"{}\" valueReference=\"{}\" causality=\"output\" variability=\"discrete\" initial=\"calculated\" clocks=\"{}\" {}/>",
+         name(TxData), first + 1, first + 3, kMime);
+    line("    <Clock name=\"{}\" valueReference=\"{}\" causality=\"input\" intervalVariability=\"triggered\"/>", name(RxClock), first + 2);
+    line("    <Clock name=\"{}\" valueReference=\"{}\" causality=\"output\" intervalVariability=\"triggered\"/>", name(TxClock), first + 3);
+  }
+
   void write_structure() {
     line("  <ModelStructure>");
     if (dialect_.nested) {
@@ -130,7 +147,10 @@ class Writer {
     } else {
       // What is set at a communication point acts in the step that follows: no output depends on an input of its time.
       for_each_output([&](size_t n) { line("    <Output valueReference=\"{}\" dependencies=\"\"/>", n + 1); });
+      for (size_t n = 0; n < terminals_.size(); ++n)
+        for (const size_t member : {first_member(n) + 1, first_member(n) + 3}) line("    <Output valueReference=\"{}\"/>", member);
       for_each_output([&](size_t n) { line("    <InitialUnknown valueReference=\"{}\"/>", n + 1); });
+      for (size_t n = 0; n < terminals_.size(); ++n) line("    <InitialUnknown valueReference=\"{}\"/>", first_member(n) + 3);
     }
     line("  </ModelStructure>");
   }
@@ -155,13 +175,15 @@ class Writer {
 
   const Dialect& dialect_;
   const Variables& variables_;
+  const std::vector<fmi::BusTerminal>& terminals_;
   std::string out_;
 };
 
 }  // namespace
 
-std::string description_of(const Dialect& dialect, const DescriptionHead& head, const fmi::Variables& variables) {
-  return Writer(dialect, variables).write(head);
+std::string description_of(const Dialect& dialect, const DescriptionHead& head, const fmi::Variables& variables,
+                           const std::vector<fmi::BusTerminal>& terminals) {
+  return Writer(dialect, variables, terminals).write(head);
 }
 
 }  // namespace ipos::tools

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "runtime/fmi/bus_terminal.hpp"
 #include "runtime/fmi/variables.hpp"
 #include "tools/fmu/dialect.hpp"
 
@@ -14,6 +16,8 @@ struct DescriptionHead {
   std::string token;
 };
 
-std::string description_of(const Dialect& dialect, const DescriptionHead& head, const fmi::Variables& variables);
+// Terminals are of FMI 3.0.
+std::string description_of(const Dialect& dialect, const DescriptionHead& head, const fmi::Variables& variables,
+                           const std::vector<fmi::BusTerminal>& terminals);
 
 }  // namespace ipos::tools

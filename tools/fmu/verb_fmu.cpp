@@ -14,6 +14,7 @@
 #include "tools/cli/notices.hpp"
 #include "tools/cli/outputs.hpp"
 #include "tools/cli/verbs.hpp"
+#include "tools/fmu/bus_terminals.hpp"
 #include "tools/fmu/description.hpp"
 #include "tools/fmu/libraries.hpp"
 #include "tools/fmu/zip.hpp"
@@ -82,12 +83,14 @@ std::string identifier_of(const std::string& model) {
   return out.empty() || (out[0] >= '0' && out[0] <= '9') ? "plant_" + out : out;
 }
 
-// What the plant has that an FMU does not do.
-void warn_of_ports(const PlantInput& input) {
-  for (const runtime::BusConfig& bus : input.file.buses)
-    if (!bus.port.empty())
-      fmt::print(stderr, "ipos: warning: {}:{}:{}: the port of '{}' is left out: an FMU opens none\n",
-                 compiler::printable(input.path), bus.port_place.line, bus.port_place.column, bus.name);
+// What the plant has that an FMU does not do. Terminals of buses have clocks, which FMI 2.0 does not know.
+void warn_of_ports(const PlantInput& input, bool has_terminals) {
+  for (const runtime::BusConfig& bus : input.file.buses) {
+    if (bus.port.empty() || (bus.port == runtime::kFmiPort && has_terminals && bus.kind == runtime::BusKind::Can)) continue;
+    fmt::print(stderr, "ipos: warning: {}:{}:{}: the port of '{}' is left out: {}\n", compiler::printable(input.path),
+               bus.port_place.line, bus.port_place.column, bus.name,
+               bus.port != runtime::kFmiPort ? "an FMU opens none" : "terminals are of CAN lines, with --fmi 3");
+  }
 }
 
 void add_libraries(const Dialect& dialect, const std::string& identifier, Zip& zip) {
@@ -117,7 +120,12 @@ int write_fmu(const FmuFlags& flags) {
   const Dialect& dialect = *std::find_if(std::begin(kDialects), std::end(kDialects),
                                          [&](const Dialect& each) { return fmt::format("{}", each.number) == flags.version; });
   const PlantInput input = read_plant_input(flags.file, flags.compile);
-  warn_of_ports(input);
+  if (!input.file.machines.empty())
+    throw Failure(kBadInput, fmt::format("{}:{}:{}: a plant with foreign machines cannot become an FMU itself", input.path,
+                                         input.file.machines.front().place.line, input.file.machines.front().place.column));
+  const bool has_terminals = dialect.number != 2;
+  warn_of_ports(input, has_terminals);
+  const auto terminals = has_terminals ? fmi::terminals_of(input.file) : std::vector<fmi::BusTerminal>();
   fmi::Package package = package_of(input, flags);
   const auto files = fmi::files_of(package, IPOS_VERSION);
   const auto plant = make_plant(input, runtime::FileUse::Look);
@@ -127,7 +135,11 @@ int write_fmu(const FmuFlags& flags) {
   const std::string model = fs::path(flags.file).stem().string();
   const std::string identifier = identifier_of(model);
   Zip zip;
-  zip.add("modelDescription.xml", description_of(dialect, {model, identifier, package.token}, *variables));
+  zip.add("modelDescription.xml", description_of(dialect, {model, identifier, package.token}, *variables, terminals));
+  if (!terminals.empty()) {
+    zip.add("terminalsAndIcons/terminalsAndIcons.xml", terminals_xml(terminals));
+    zip.add("extra/org.fmi-standard.fmi-ls-bus/fmi-ls-manifest.xml", manifest_xml());
+  }
   add_libraries(dialect, identifier, zip);
   zip.add("documentation/licenses/license.txt", notices_text());
   for (const auto& [name, bytes] : files) zip.add("resources/" + name, bytes);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "runtime/plant_file/outer_port.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/terminal.hpp"
 
@@ -43,7 +44,7 @@ class PlantSimulation final : public runtime::Simulation {
 void refuse_ports(const runtime::PlantFile& plant, const std::string& file) {
   bool refused = false;
   for (const runtime::BusConfig& bus : plant.buses) {
-    if (bus.port.empty()) continue;
+    if (!runtime::has_outer_port(bus)) continue;
     refused = true;
     fmt::print(
         stderr,
@@ -59,7 +60,7 @@ RealTimeRun::RealTimeRun(runtime::Plant& plant, const std::string& file) : plant
   for (const auto& station : plant.stations()) station->use_pace(runtime::Pace::InTurn);
   bool failed = false;
   for (const runtime::BusConfig& bus : plant.file().buses) {
-    if (bus.port.empty()) continue;
+    if (!runtime::has_outer_port(bus)) continue;
     auto joined = join_port(plant_, *plant_.find_bus(bus.name), bus.port, clock_);
     if (!joined) {
       failed = true;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "runtime/plant_file/outer_port.hpp"
 #include "tools/cli/failure.hpp"
 
 namespace ipos::tools::serve {
@@ -18,12 +19,12 @@ constexpr uint64_t kMostTold = 100;
 
 bool PlantPorts::has_ports(const runtime::PlantFile& plant) {
   return std::any_of(plant.buses.begin(), plant.buses.end(),
-                     [](const auto& bus) { return !bus.port.empty(); });
+                     runtime::has_outer_port);
 }
 
 void PlantPorts::join(runtime::Plant& plant, const std::string& file) {
   for (const runtime::BusConfig& bus : plant.file().buses) {
-    if (bus.port.empty()) continue;
+    if (!runtime::has_outer_port(bus)) continue;
     auto joined =
         runtime::join_port(plant, *plant.find_bus(bus.name), bus.port, clock_, runtime::PortLoss::GoesOn);
     if (!joined)

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "runtime/plant_file/expect_keys.hpp"
+#include "runtime/plant_file/outer_port.hpp"
 #include "tools/cli/files.hpp"
 #include "tools/cli/text_lines.hpp"
 #include "tools/test_file/item_reader.hpp"
@@ -188,7 +189,7 @@ void read_items(PlantReader& reader, const toml::table& root, TestCase& test) {
 // Errors of planning that only matter to tests.
 void check_test(PlantReader& reader) {
   for (runtime::BusConfig& bus : reader.result.plant.buses)
-    if (!bus.port.empty())
+    if (runtime::has_outer_port(bus))
       reader.error(bus.port_place,
                    fmt::format("bus '{}' is joined to port '{}': a test runs in virtual time, "
                                "without the world outside",

@@ -5,6 +5,7 @@
 
 #include <set>
 
+#include "runtime/plant_file/outer_port.hpp"
 #include "runtime/signals/find.hpp"
 #include "tools/serve/host/step_text.hpp"
 
@@ -20,7 +21,7 @@ std::string at_row(Time time) { return fmt::format("at = \"{}ms\"\n", time / run
 // Why no test can do the run of this plant again.
 void refuse(PlantHost& host) {
   for (const runtime::BusConfig& bus : host.plant().file().buses)
-    if (!bus.port.empty())
+    if (runtime::has_outer_port(bus))
       throw Mistake(fmt::format("{} is joined to {}: a test has no world outside, and cannot do this run again", bus.name,
                                 bus.port));
   const debug::Position& now = host.debugger().position();
