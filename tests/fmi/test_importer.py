@@ -74,7 +74,8 @@ def test_its_files(tmp_path):
 
 def test_a_line_becomes_a_terminal(tmp_path):
     (tmp_path / "p.toml").write_text('[[bus]]\nname = "sbus"\nkind = "can"\nport = "fmi"\n'
-                                     '[[bus]]\nname = "rs"\nkind = "rs485"\nport = "fmi"\n')
+                                     '[[bus]]\nname = "rs"\nkind = "rs485"\nport = "fmi"\n'
+                                     '[[station]]\nname = "u"\nunit = "mdxb"\nsbus = "sbus"\n')
     fmu = Fmu(write_fmu(tmp_path / "p.toml", tmp_path / "a.fmu", 3), tmp_path / "u")
     assert [fmu.variables[f"sbus.{name}"].kind for name in ("Rx_Data", "Tx_Clock")] == ["Binary", "Clock"]
     assert "rs.Rx_Data" not in fmu.variables
