@@ -13,7 +13,7 @@ if not PATH:
 sys.path.insert(0, PATH)
 fmpy = pytest.importorskip("fmpy", reason="IPOS_FMPY: FMPy needs numpy, lxml, lark, attr and msgpack")
 
-PLANTS = sorted(path for path in SOURCE.glob("examples/*/*.toml") if not path.name.endswith(".test.toml"))
+PLANTS = sorted(path for path in SOURCE.glob("examples/*/*.toml") if not path.name.endswith((".test.toml", ".campaign.toml")))
 
 
 @pytest.mark.parametrize("version", [2, 3])
