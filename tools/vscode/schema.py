@@ -165,7 +165,9 @@ class Table:
                 "^P?[0-9]+$": {"type": ["string", "integer", "boolean"]}}, "additionalProperties": False}
         if key == "inputs":
             return {"type": "object", "patternProperties": {
-                "^DI[01][0-7]$": {"enum": [0, 1, False, True]}}, "additionalProperties": False}
+                # A test with cases may have the value of the case: "$di10".
+                "^DI[01][0-7]$": {"anyOf": [{"enum": [0, 1, False, True]}, {"type": "string", "pattern": r"^\$\w+$"}]}},
+                "additionalProperties": False}
         return found or {"type": "object"}
 
 
