@@ -11,6 +11,8 @@ if(CMAKE_SYSTEM_NAME STREQUAL Linux)
   # The kernel's header of rates and <termios.h> exclude each other.
   set_source_files_properties(os_port/tty_rate.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 elseif(WIN32)
+  # The header of Windows has macros `near` and `far`, so it stands behind ours in a batch.
+  set_source_files_properties(${adapters} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   list(APPEND ports ${adapters} os_port/windows/shared_library.cpp os_port/windows/clock.cpp os_port/windows/port_names.cpp
                     os_port/windows/serial_devices.cpp os_port/windows/tty.cpp os_port/windows/absent_ports.cpp)
   set(system_libraries winmm)

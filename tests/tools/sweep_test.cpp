@@ -28,7 +28,7 @@ using Words = std::vector<std::string>;
 // A command that works, in a folder with the files of prepare().
 struct Sample {
   Words words;
-  Words inputs;        // files it reads; a word "@port" is a path from the root
+  Words inputs;        // files it reads; a word "@port" is a path from the root, "@case" the first case of the campaign
   Words outputs = {};  // files it may make or change
   std::string typed = {};
   bool finds_others =
@@ -62,6 +62,18 @@ const std::map<std::string, std::vector<Sample>>& samples() {
          {"out.xml", "out.tap", "out.json", "out.info"}},
         {{"test", "."}, {}},
         {{"test", "x.test.toml", "--list"}, {"x.test.toml"}}}},
+      {"campaign plan", {{{"campaign", "plan", "c.campaign.toml"}, {"c.campaign.toml", "plant.toml", "A.IPC", "own.h"}}}},
+      {"campaign run",
+       {{{"campaign", "run", "c.campaign.toml", "--out", "out.cases", "--jobs", "1"},
+         {"c.campaign.toml", "plant.toml", "A.IPC", "own.h"},
+         {"out.cases"}}}},
+      {"campaign merge",
+       {{{"campaign", "merge", "done", "--csv", "out.csv", "--junit", "out.xml", "--html", "out.html"},
+         {"done/shard-1-of-1.jsonl"},
+         {"out.csv", "out.xml", "out.html"}},
+        {{"campaign", "merge", "done", "--csv", "-"}, {"done/shard-1-of-1.jsonl"}}}},
+      {"campaign show", {{{"campaign", "show", "c.campaign.toml", "@case"}, {"c.campaign.toml", "plant.toml", "A.IPC", "own.h"}}}},
+      {"fmu", {{{"fmu", "plant.toml", "-o", "out.fmu"}, {"plant.toml", "A.IPC", "own.h"}, {"out.fmu"}}}},
       {"bus plan", {{{"bus", "plan", "plant.toml"}, {"plant.toml", "A.IPC", "own.h", "u.nv"}}}},
       {"bus decode",
        {{{"bus", "decode", "can.log", "--names", "plant.toml"}, {"can.log", "plant.toml", "A.IPC", "u.nv"}}}},
@@ -177,9 +189,15 @@ class Sweep : public ::testing::Test {
             "plant = \"plant.toml\"\n[[expect]]\nstation = \"u\"\nstate = \"fault\"\nequals = 0\n"
             "[[step]]\nwait = \"1ms\"\n");
     f.write("port", "no port\n");
+    f.write("c.campaign.toml",
+            "plant = \"plant.toml\"\nfor = \"10ms\"\n[[vary]]\nstation = \"u\"\nvariable = \"H10\"\nvalues = [1, 2]\n");
     ASSERT_EQ(run_ipos({"build", "A.IPC"}, f.path()).exit_code, 0);
     ASSERT_EQ(run_ipos({"param", "save", "plant.toml", "u.settings"}, f.path()).exit_code, 0);
     ASSERT_EQ(run_ipos({"param", "set", "plant.toml", "P130=1.5s"}, f.path()).exit_code, 0);
+    ASSERT_EQ(run_ipos({"campaign", "run", "c.campaign.toml", "--out", "done", "--jobs", "1"}, f.path()).exit_code, 0);
+    const std::string rows = read_text(f.path() / "done/shard-1-of-1.jsonl"), begin = "{\"case\":\"";
+    ASSERT_TRUE(rows.starts_with(begin));
+    case_ = rows.substr(begin.size(), 16);
     const std::string text = run_ipos({"disasm", "A.ipx"}, f.path()).out;
     f.write("A.ipa", text);
   }
@@ -207,7 +225,10 @@ class Sweep : public ::testing::Test {
       if (chdir(folder.c_str()) != 0) _exit(126);
       Words words = sample.words;
       for (std::string& word : words)
-        if (word.starts_with("@")) word = (folder / word.substr(1)).string();
+        if (word == "@case")
+          word = case_;
+        else if (word.starts_with("@"))
+          word = (folder / word.substr(1)).string();
       std::vector<char*> argv{const_cast<char*>("ipos")};
       for (std::string& word : words) argv.push_back(word.data());
       argv.push_back(nullptr);
@@ -239,6 +260,7 @@ class Sweep : public ::testing::Test {
   }
 
   TemporaryFolder good_;
+  std::string case_;
   int cases_ = 0;
 };
 
