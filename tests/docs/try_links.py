@@ -24,7 +24,7 @@ without = []  # place and reason
 def of_example(page, folder):
     def row(found):
         name = found[1]
-        plants = [p for p in (folder / name).glob("*.toml") if not p.name.endswith(".test.toml")]
+        plants = [p for p in (folder / name).glob("*.toml") if not p.name.endswith((".test.toml", ".campaign.toml"))]
         if not plants:
             without.append((f"examples/{name}", "no plant file: a program in C or Python that embeds one"))
         link = f" [try](../{PAGE}#example={name})" if plants else ""

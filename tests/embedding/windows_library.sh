@@ -48,7 +48,7 @@ cp examples/scom/* "$work/Säge"
 plants=(S%C3%A4ge/scom.toml)
 for example in scom movilink-rs485 profibus canopen isync hoist flying-cut; do
   cp -r "examples/$example" "$work"
-  plants+=("$example/$(basename "$(ls examples/$example/*.toml | grep -v '\.test\.toml$' | head -n 1)")")
+  plants+=("$example/$(basename "$(ls examples/$example/*.toml | grep -v '\.\(test\|campaign\)\.toml$' | head -n 1)")")
 done
 cd "$work"
 ./plant_client "${plants[@]}" >linux

@@ -199,7 +199,7 @@ def dissected(folder):
     everything = folder / "all.pcapng"
     with open(everything, "wb") as out:
         for plant in sorted(SOURCE.glob("examples/*/*.toml")):
-            if plant.name.endswith(".test.toml"):
+            if plant.name.endswith((".test.toml", ".campaign.toml")):
                 continue
             log = folder / "one.pcapng"
             run(IPOS, "run", str(plant), "--for", "600ms", "--log", str(log))

@@ -10,7 +10,7 @@ function below(folder) {
 }
 
 function isPlant(path) {
-  return path.endsWith(".toml") && !path.endsWith(".test.toml");
+  return path.endsWith(".toml") && !/\.(test|campaign)\.toml$/.test(path);
 }
 
 const is_source = /\.(IPC|h|toml|ipx)$/i;

@@ -14,7 +14,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 HERE = Path(__file__).resolve().parent
 EXE, LINUX = (Path(word).resolve() for word in sys.argv[1:3])
-PLANTS = sorted(str(p.relative_to(ROOT)) for p in ROOT.glob("examples/*/*.toml") if not p.name.endswith(".test.toml"))
+PLANTS = sorted(str(p.relative_to(ROOT)) for p in ROOT.glob("examples/*/*.toml") if not p.name.endswith((".test.toml", ".campaign.toml")))
 PLANTS = [p for p in PLANTS if "[[station]]" in (ROOT / p).read_text()]
 PROGRAMS = sorted(str(p.relative_to(ROOT)) for p in ROOT.glob("examples/*/*.IPC"))
 
