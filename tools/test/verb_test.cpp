@@ -191,8 +191,10 @@ int run_once(const TestFlags& flags, std::vector<TestCase>& tests) {
                fmt::join(flags.paths, " "));
     return kFindings;
   }
+#ifndef __EMSCRIPTEN__  // the page has to stay small, and has no --mutate
   if (flags.mutate)
     return mutate(tests, {flags.suite, flags.list, for_github(flags), root_of_github(), flags.junit, flags.json, flags.html});
+#endif
   if (flags.list) {
     for (const TestCase& test : tests)
       fmt::print("{}\n", compiler::printable(fmt::format("{}  {}:{}", test.name, test.file, test.place.line)));
@@ -257,8 +259,10 @@ void add_test(cli::Verb& app) {
   verb.flag("--last-failed", flags->last_failed,
             "only those that did not pass when they were run last in this folder");
   verb.flag("--watch", flags->watch, "run them again whenever a file of theirs changes, until Ctrl-C");
+#ifndef __EMSCRIPTEN__
   verb.flag("--mutate", flags->mutate,
             "plant mistakes into the programs, one at a time, and tell those that no test notices");
+#endif
   verb.flag("--list", flags->list, "tell the names and run nothing; with --mutate: what would be planted");
   verb.option("--jobs,-j", flags->suite.jobs, "tests at a time; default: the number of cores")
       .between(1U, 256U);
