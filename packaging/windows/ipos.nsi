@@ -31,6 +31,8 @@ VIAddVersionKey FileVersion "${VERSION}"
 VIAddVersionKey ProductVersion "${VERSION}"
 VIAddVersionKey LegalCopyright "the ipos contributors"
 
+!define MUI_ICON ipos.ico
+!define MUI_UNICON ipos.ico
 !define MUI_COMPONENTSPAGE_SMALLDESC
 !define MUI_FINISHPAGE_RUN "$INSTDIR\ipos.exe"
 !define MUI_FINISHPAGE_RUN_TEXT "Open the gallery of ipos in the browser"

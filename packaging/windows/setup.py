@@ -30,6 +30,7 @@ def make_setup(program: Path, out: Path) -> Path:
         stage = Path(folder)
         for name in ("ipos.nsi", "path.nsh"):
             shutil.copy(HERE / name, stage)
+        shutil.copy(ROOT / "tools/windows/ipos.ico", stage)
         shutil.copy(program, stage / "ipos.exe")
         # Windows' own editor shows lines that end with LF since 2018 alone.
         licence = (ROOT / "LICENSE").read_text(encoding="utf-8")

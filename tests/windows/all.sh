@@ -18,4 +18,5 @@ try python3 ../packaging/setup_test.py "$exe"
 try python3 verbs.py "$exe" "$linux"
 try ./clients.sh "$exe" editor lsp.test.mjs dap.test.mjs
 try ./clients.sh "$exe" web test/timeline.test.mjs test/edit.test.mjs test/gallery.test.mjs test/keep.test.mjs
+try ./clicked.sh "$exe"
 exit $status
