@@ -76,6 +76,8 @@ TEST_F(Browser, ComparesAndSetsParameters) { expect_node_passed(run("parameters.
 
 TEST_F(Browser, KeepsClicksAsATestAndASession) { expect_node_passed(run("keep.test.mjs"), 3); }
 
+TEST_F(Browser, ReadsTheReportOfACampaign) { expect_node_passed(run("report.test.mjs"), 6); }
+
 TEST_F(Browser, OpensExamplesAndBuildsAPlant) { expect_node_passed(run("gallery.test.mjs"), 2); }
 
 TEST_F(Browser, NeedsTheKeyboardAlone) { expect_node_passed(run("keyboard.test.mjs"), 4); }
