@@ -7,6 +7,7 @@ from ctypes import byref, c_size_t, c_uint8, c_uint32
 from typing import TYPE_CHECKING
 
 from . import _library as lib
+from ._signals import SignalOwner
 
 if TYPE_CHECKING:
     from .plant import Plant
@@ -54,11 +55,12 @@ class Telegram:
         return f"<Telegram {self.time * 1e3:.3f} ms {self.data.hex(' ').upper()}: {self.text}>"
 
 
-class Bus:
+class Bus(SignalOwner):
     """plant.buses["sbus"]."""
 
     def __init__(self, plant: "Plant", number: int, info: lib.BusInfo) -> None:
-        self._plant, self._number = plant, number
+        super().__init__(plant, lib.LINE + number)
+        self._number = number
         self.name = lib.text(info.name)
         self.kind = ("can", "serial", "profibus")[info.kind]
         self.baud: int = info.baud
@@ -138,6 +140,11 @@ class Bus:
                 if status != lib.OK:
                     raise self._plant._error(status)
                 found.append(Telegram(row))
+
+    def __getitem__(self, name: str) -> float:
+        """What a telegram carried last: bus["013.PO2"]; also "load" and "count". A telegram is kept from the first look on."""
+        signal = self._find(lib.SIGNAL, name)
+        return self._read(signal) * self._scale(signal).factor
 
     @property
     def load(self) -> float:

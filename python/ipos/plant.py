@@ -8,6 +8,7 @@ from ctypes import byref, c_char_p, c_int64, c_size_t, c_uint64, c_void_p, creat
 from typing import Callable, Iterator, Mapping, NamedTuple, Sequence
 
 from . import _library as lib
+from ._signals import SignalOwner
 from .bus import Bus
 from .recording import Reader, Recording
 from .station import Station
@@ -321,17 +322,16 @@ class Plant(lib.Named):
         """The signals from power-on until now, though nobody has recorded them: the run is done once more for it."""
         return Recording.of_replay(self, names, lib.duration_ns(every))
 
-    def _signal_of(self, name: str) -> tuple[Station, str]:
-        """ "saw.lCount": the station with the longest fitting name, and the rest."""
+    def _signal_of(self, name: str) -> tuple[SignalOwner, str]:
+        """ "saw.lCount": the station or line with the longest fitting name, and the rest."""
         if not isinstance(name, str):
             raise TypeError(f"a signal is named by a text such as 'saw.lCount', not {type(name).__name__}")
-        fits = [each for each in self._stations if name.startswith(each + ".")]
+        owners: dict[str, SignalOwner] = {**self._buses, **self._stations}
+        fits = [each for each in owners if name.startswith(each + ".")]
         if not fits:
-            raise lib.unknown(
-                f"'{name}' is no signal; signals begin with {', '.join(each + '.' for each in self._stations)}"
-            )
-        station = max(fits, key=len)
-        return self._stations[station], name[len(station) + 1 :]
+            raise lib.unknown(f"'{name}' is no signal; signals begin with {', '.join(each + '.' for each in owners)}")
+        owner = max(fits, key=len)
+        return owners[owner], name[len(owner) + 1 :]
 
     # --- faults of lines
 

@@ -23,9 +23,9 @@ class Reader:
         self.names = tuple(names)
         signals, self._factors, units = [], [], []
         for name in self.names:
-            station, rest = plant._signal_of(name)
-            signal = station._find(lib.ANY, rest)
-            scale = station._scale(signal)
+            owner, rest = plant._signal_of(name)
+            signal = owner._find(lib.ANY, rest)
+            scale = owner._scale(signal)
             signals.append(signal)
             self._factors.append(scale.factor)
             units.append(scale.unit)

@@ -4,21 +4,15 @@ from __future__ import annotations
 
 import operator
 from ctypes import byref, c_char_p, c_int64, c_uint32
-from typing import TYPE_CHECKING, Iterator, Mapping, NamedTuple
+from typing import TYPE_CHECKING, Iterator, Mapping
 
 from . import _library as lib
+from ._signals import Scale, SignalOwner
 
 if TYPE_CHECKING:
     from .plant import Plant
 
 _PROGRAM_ORDERS = {"start": 0, "stop": 1, "restart": 2}
-
-
-class Scale(NamedTuple):
-    """How people read the numbers of a signal: times `factor`, in `unit`."""
-
-    factor: float
-    unit: str
 
 
 class ParameterValue(int):
@@ -207,16 +201,16 @@ class Shaft(_Signals):
         self._station._write(how, signal, _whole_number(round(value / self._station._scale(signal).factor)))
 
 
-class Station(lib.Named):
+class Station(lib.Named, SignalOwner):
     """plant["saw"]. Variables by name: saw["lCount"], saw["TrCycl.Result"], saw["H430"]; saw["lCount"] = 5."""
 
     def __init__(self, plant: "Plant", number: int, info: lib.StationInfo) -> None:
-        self._plant, self._number = plant, number
+        SignalOwner.__init__(self, plant, number)
+        self._number = number
         self.name = lib.text(info.name)
         self.unit = lib.text(info.unit)
         self.title = lib.text(info.title)
         self.program = lib.text(info.program)
-        self._found: dict[tuple[int, str], int] = {}
         self._wholes: dict[str, list[str] | None] = {}
         self.parameters = Parameters(self)
         self.inputs = Inputs(self)
@@ -385,15 +379,6 @@ class Station(lib.Named):
     def _state(self, name: str) -> int:
         return self._read(self._find(lib.STATE, name))
 
-    def _find(self, kind: int, name: object) -> int:
-        found = self._found.get((kind, name))  # type: ignore[arg-type]
-        if found is not None:
-            return found
-        signal = c_uint32()
-        self._plant._call("find", self._number, kind, lib.encoded(name), byref(signal))
-        self._found[(kind, name)] = signal.value  # type: ignore[index]
-        return signal.value
-
     def _names(self, kind: int, part: str | None = None) -> list[str]:
         names: list[str] = []
         name = c_char_p()
@@ -406,17 +391,6 @@ class Station(lib.Named):
                 if status != lib.OK:
                     raise self._plant._error(status)
                 names.append(lib.text(name.value))
-
-    def _scale(self, signal: int) -> Scale:
-        info = lib.SignalInfo()
-        with self._plant._gate:
-            self._plant._call("signal_info_of", signal, byref(info))
-            return Scale(info.factor, lib.text(info.unit))
-
-    def _read(self, signal: int) -> int:
-        value = c_int64()
-        self._plant._call("read", signal, byref(value))
-        return value.value
 
     def _text(self, signal: int) -> str:
         return self._plant._text("read_text", signal)

@@ -62,7 +62,7 @@ ipos_plant_status ipos_plant_find(ipos_plant* plant, uint32_t station, ipos_plan
   return enter(plant, Allowed::Anywhere, [=](Session& session) {
     if (name == nullptr || signal == nullptr || !is_kind(kind))
       return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
-    if (station >= station_count(session.plant())) return no_station(plant, station);
+    if (!has_signals(session.plant(), station)) return no_station(plant, station);
     auto id = find_id(session.plant(), station, static_cast<Kind>(kind), name);
     if (!id) return plant->fail(IPOS_PLANT_NO_SIGNAL, std::move(id).error());
     *signal = session.add_signal(*id, name);
@@ -95,7 +95,7 @@ ipos_plant_status ipos_plant_name_at(ipos_plant* plant, uint32_t station, ipos_p
   return enter(plant, Allowed::Anywhere, [=](Session& session) {
     if (name == nullptr || !is_kind(kind) || kind == IPOS_PLANT_ANY)
       return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
-    if (station >= station_count(session.plant())) return no_station(plant, station);
+    if (!has_signals(session.plant(), station)) return no_station(plant, station);
     const auto whole = part == nullptr ? std::nullopt : std::optional<std::string_view>(part);
     const std::string asked = fmt::format("{} {} {}{}", station, kind, whole ? "of " : "", whole.value_or(""));
     if (plant->listed_for != asked) {

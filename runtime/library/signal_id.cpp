@@ -72,6 +72,23 @@ std::vector<std::string> gateway_names(const runtime::Gateway& gateway, Kind kin
   return names;
 }
 
+std::string full_name(const runtime::Bus& line, std::string_view name) { return fmt::format("{}.{}", line.name(), name); }
+
+// A line keeps its telegrams from the first look on, which is here.
+std::optional<Signal> find_of_line(const Plant& plant, const runtime::Bus& line, std::string_view name) {
+  auto found = signals::find_signals(plant, full_name(line, name));
+  if (!found || found->size() != 1) return std::nullopt;
+  found->front().read();
+  return std::move(found->front());
+}
+
+std::vector<std::string> line_names(const Plant& plant, const runtime::Bus& line) {
+  std::vector<std::string> names;
+  if (const auto found = signals::find_signals(plant, full_name(line, "*")))
+    for (const Signal& signal : *found) names.emplace_back(signal.name.substr(line.name().size() + 1));
+  return names;
+}
+
 // Every name that a kind has; of Any those of all kinds that have a few.
 std::vector<std::string> all_names(const Plant& plant, uint32_t number, Kind kind) {
   if (kind != Kind::Any) return signal_names(plant, number, kind);
@@ -119,6 +136,20 @@ runtime::Gateway* gateway_of(const Plant& plant, uint32_t station) {
   return behind < gateways.size() ? gateways[behind] : nullptr;
 }
 
+runtime::Bus* line_of(const Plant& plant, uint32_t station) {
+  if (station < kLine) return nullptr;
+  std::vector<runtime::Bus*> lines;
+  const auto add = [&](const auto& of_class) { lines.insert(lines.end(), of_class.begin(), of_class.end()); };
+  add(plant.all<runtime::CanBus>());
+  add(plant.all<runtime::SerialBus>());
+  add(plant.all<runtime::ProfibusBus>());
+  return station - kLine < lines.size() ? lines[station - kLine] : nullptr;
+}
+
+bool has_signals(const Plant& plant, uint32_t station) {
+  return station < station_count(plant) || line_of(plant, station) != nullptr;
+}
+
 std::string station_names(const Plant& plant) {
   std::vector<std::string_view> names;
   for (const auto& station : plant.stations()) names.push_back(station->config().name);
@@ -133,6 +164,11 @@ tl::expected<SignalId, std::string> find_id(const Plant& plant, uint32_t number,
     return tl::unexpected(fmt::format("gateway '{}' has no {} '{}'; it has {}", gateway->config().name,
                                       row_of(kind).word, name, signals::names_of(signals::gateway_signals(*gateway))));
   }
+  if (const runtime::Bus* line = line_of(plant, number)) {
+    if ((kind == Kind::Any || kind == Kind::Signal) && find_of_line(plant, *line, name)) return SignalId{number, Kind::Signal, 0};
+    return tl::unexpected(fmt::format("line '{}' has no {} '{}'; it has {}, and telegrams as 013.PO2", line->name(), row_of(kind).word,
+                                      name, fmt::join(line_names(plant, *line), ", ")));
+  }
   Station& station = *plant.stations()[number];
   for (const Kind each : kNamed)
     if (kind == Kind::Any || kind == each)
@@ -146,6 +182,8 @@ std::optional<Signal> signal_of(const Plant& plant, const SignalId& id, std::str
     return id.kind == Kind::Signal ? signals::find_among(signals::gateway_signals(*gateway),
                                                          fmt::format("{}.{}", gateway->config().name, name))
                                    : std::nullopt;
+  if (const runtime::Bus* line = line_of(plant, id.station))
+    return id.kind == Kind::Signal ? find_of_line(plant, *line, name) : std::nullopt;
   if (id.station >= plant.stations().size()) return std::nullopt;
   Station& station = *plant.stations()[id.station];
   if (const auto group = row_of(id.kind).group) return signals::signal_at(station, *group, id.number);
@@ -167,6 +205,8 @@ std::optional<SignalId> id_of(const Plant& plant, const Signal& signal) {
 std::vector<std::string> signal_names(const Plant& plant, uint32_t number, Kind kind,
                                       std::optional<std::string_view> part) {
   if (const runtime::Gateway* gateway = gateway_of(plant, number)) return gateway_names(*gateway, kind);
+  if (const runtime::Bus* line = line_of(plant, number))
+    return kind == Kind::Signal ? line_names(plant, *line) : std::vector<std::string>();
   Station& station = *plant.stations()[number];
   std::vector<std::string> names;
   if (kind == Kind::Variable && part) {

@@ -32,6 +32,10 @@ struct SignalId {
 
 // Gateways are numbered after the stations with a drive. They have power and signals, which can only be read.
 size_t station_count(const runtime::Plant& plant);
+// Lines have the numbers kLine + 0 and up, CAN lines first, then serial ones, then PROFIBUS. They have signals, which can only be read.
+inline constexpr uint32_t kLine = 0x8000'0000;
+runtime::Bus* line_of(const runtime::Plant& plant, uint32_t station);  // nullptr: it is none
+bool has_signals(const runtime::Plant& plant, uint32_t station);       // a station, gateway or line of this number is there
 runtime::Gateway* gateway_of(const runtime::Plant& plant, uint32_t station);  // nullptr: it is none
 std::string station_names(const runtime::Plant& plant);                       // "saw, feed"
 

@@ -298,10 +298,10 @@ def groups_of_debugger(folder):
 
 
 def groups_of_python(folder):
-    names = [name for name in GROUP_ROWS if not name.startswith(LINES)]
     with ipos.Plant(str(folder / "p.toml")) as plant:
+        read = plant.reader(*GROUP_ROWS)  # lines keep telegrams from now on
         plant.run("2s")
-        return dict(zip(names, map(float, plant.reader(*names)())))
+        return dict(zip(GROUP_ROWS, map(float, read())))
 
 
 def groups_of_page(folder):

@@ -214,6 +214,11 @@ typedef struct ipos_plant_signal_info {
   uint32_t flags;
 } ipos_plant_signal_info;
 
+/* A line has signals, too, to be read as IPOS_PLANT_SIGNAL: "load", "count", and what its telegrams carried last, as
+ * docs/guide/recording.md names them: "013.PO2". Where the functions below take a station, line number `bus` is
+ * IPOS_PLANT_LINE + bus. A telegram is kept from the moment at which one of its signals is found. */
+#define IPOS_PLANT_LINE 0x80000000U
+
 /* Finds a signal once; its number holds as long as the plant is open, also over ipos_plant_restore().
  * IPOS_PLANT_NO_STATION, IPOS_PLANT_NO_SIGNAL (the message names what there is). In callbacks. */
 ipos_plant_status ipos_plant_find(ipos_plant* plant, uint32_t station, ipos_plant_kind kind, const char* name,

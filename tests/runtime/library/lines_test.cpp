@@ -195,5 +195,43 @@ TEST(LibraryLines, FaultsAreReadLikeThoseOfThePlant) {
   EXPECT_EQ(plant.message(), "station 'a' is not on bus 'alone'");
 }
 
+// A line has signals by name: its load, and what its telegrams carried last, also after a state was restored.
+TEST(LibraryLines, TelegramsAreSignals) {
+  const OpenedPlant plant(kThreeLines);
+  const auto find = [&](uint32_t line, const char* name) {
+    uint32_t signal = UINT32_MAX;
+    EXPECT_EQ(ipos_plant_find(plant.plant, IPOS_PLANT_LINE + line, IPOS_PLANT_ANY, name, &signal), IPOS_PLANT_OK) << plant.message();
+    return signal;
+  };
+  const uint32_t byte = find(0, "123.B1"), other = find(1, "123.B1"), count = find(0, "count");
+  const ipos_plant_frame sent = frame_with(0x123, 0, 3);  // 1, 2, 3
+  uint32_t tag = 0;
+  ASSERT_EQ(ipos_plant_send(plant.plant, 0, &sent, &tag), IPOS_PLANT_OK);
+  plant.run(5);
+  EXPECT_EQ(plant.value(byte), 2);
+  EXPECT_EQ(plant.value(other), 0);
+  EXPECT_EQ(plant.value(count), static_cast<int64_t>(plant.frames().size()));
+  size_t size = 0;
+  ASSERT_EQ(ipos_plant_save(plant.plant, nullptr, &size), IPOS_PLANT_TOO_SMALL);
+  std::string saved(size, '\0');
+  ASSERT_EQ(ipos_plant_save(plant.plant, saved.data(), &size), IPOS_PLANT_OK);
+  ASSERT_EQ(ipos_plant_restore(plant.plant, saved.data(), size), IPOS_PLANT_OK) << plant.message();
+  EXPECT_EQ(plant.value(byte), 2);
+
+  EXPECT_EQ(plant.info(byte).kind, IPOS_PLANT_SIGNAL);
+  EXPECT_EQ(plant.info(byte).flags, 0U);
+  for (const auto change : {ipos_plant_write, ipos_plant_force}) EXPECT_EQ(change(plant.plant, byte, 1), IPOS_PLANT_READ_ONLY);
+  uint32_t signal = 0;
+  EXPECT_EQ(ipos_plant_find(plant.plant, IPOS_PLANT_LINE, IPOS_PLANT_ANY, "speed", &signal), IPOS_PLANT_NO_SIGNAL);
+  EXPECT_NE(plant.message().find("line 'can' has no signal 'speed'; it has load, count"), std::string::npos) << plant.message();
+  EXPECT_EQ(ipos_plant_find(plant.plant, IPOS_PLANT_LINE, IPOS_PLANT_STATE, "load", &signal), IPOS_PLANT_NO_SIGNAL);
+  EXPECT_EQ(ipos_plant_find(plant.plant, IPOS_PLANT_LINE + 3, IPOS_PLANT_ANY, "load", &signal), IPOS_PLANT_NO_STATION);
+  const char* name = nullptr;
+  EXPECT_EQ(ipos_plant_name_at(plant.plant, IPOS_PLANT_LINE + 2, IPOS_PLANT_SIGNAL, nullptr, 0, &name), IPOS_PLANT_OK);
+  EXPECT_STREQ(name, "load");
+  EXPECT_EQ(ipos_plant_name_at(plant.plant, IPOS_PLANT_LINE + 2, IPOS_PLANT_STATE, nullptr, 0, &name), IPOS_PLANT_NOTHING);
+  EXPECT_EQ(ipos_plant_power(plant.plant, IPOS_PLANT_LINE, false), IPOS_PLANT_NO_STATION);
+}
+
 }  // namespace
 }  // namespace ipos::tests
