@@ -329,7 +329,8 @@ class Plant(lib.Named):
         owners: dict[str, SignalOwner] = {**self._buses, **self._stations}
         fits = [each for each in owners if name.startswith(each + ".")]
         if not fits:
-            raise lib.unknown(f"'{name}' is no signal; signals begin with {', '.join(each + '.' for each in owners)}")
+            known = ", ".join(each + "." for each in [*self._stations, *self._buses])
+            raise lib.unknown(f"'{name}' is no signal; signals begin with {known}")
         owner = max(fits, key=len)
         return owners[owner], name[len(owner) + 1 :]
 

@@ -97,6 +97,9 @@ TEST(LspLenses, RunDebugAndTheWayToThePlant) {
   std::vector<std::string> titles;
   const Json of_program = client.request("textDocument/codeLens", Client::document(kProgram));
   for (const Json& lens : of_program) titles.push_back(lens["command"]["title"]);
+  ASSERT_EQ(titles.size(), 4U);
+  EXPECT_TRUE(titles.back().starts_with("at most ")) << titles.back();
+  titles.pop_back();
   EXPECT_EQ(titles, (std::vector<std::string>{"Run", "Debug", "saw in line.toml"}));
   EXPECT_EQ(of_program[0]["range"]["start"]["line"], 4);
   EXPECT_EQ(of_program[2]["command"]["arguments"], Json({uri(kPlant), {{"line", 3}, {"character", 11}}}));
@@ -107,6 +110,20 @@ TEST(LspLenses, RunDebugAndTheWayToThePlant) {
   const Json of_test = client.request("textDocument/codeLens", Client::document(kTest));
   ASSERT_EQ(of_test.size(), 1U);
   EXPECT_EQ(of_test[0]["command"]["command"], "ipos.test");
+}
+
+// What a function costs stands above it, as `ipos build --time` has it (tests/generated/timing_test.cpp counts by hand).
+TEST(LspLenses, CostOfFunctions) {
+  Client client;
+  client.open(kProgram,
+              "long lA;\nCount()\n{\n  lA++;\n}\nHang()\n{\n  while (lA != 5) {}\n}\nmain()\n{\n  while (1)\n  {\n    Count();\n    Hang();\n  }\n}\n");
+  std::map<int, std::string> titles;
+  for (const Json& lens : client.request("textDocument/codeLens", Client::document(kProgram)))
+    if (lens["command"]["command"] == "") titles[lens["range"]["start"]["line"]] = lens["command"]["title"];
+  ASSERT_EQ(titles.size(), 3U);
+  EXPECT_EQ(titles[1], "at most 2 commands, 2 ms");
+  EXPECT_TRUE(titles[5].starts_with("no bound: ")) << titles[5];
+  EXPECT_TRUE(titles[9].starts_with("a turn: no bound: ")) << titles[9];
 }
 
 TEST(LspFolding, BlocksCommentsAndTables) {

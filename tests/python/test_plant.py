@@ -438,7 +438,7 @@ def test_many_signals_in_one_call(line):
     assert reader.units[0] == "%Mn" and 10 <= before[3] <= 35
     line.restore(line.snapshot())
     assert reader() == before
-    with pytest.raises(KeyError, match="begin with saw., belt."):
+    with pytest.raises(KeyError, match="begin with saw., belt., sbus."):
         line.reader("mill.lCount")
     with pytest.raises(TypeError):
         line.reader(5)

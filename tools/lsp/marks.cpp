@@ -4,8 +4,10 @@
 
 #include <algorithm>
 
+#include "compiler/analysis/timing.hpp"
 #include "tools/lsp/marks.hpp"
 #include "tools/lsp/plant_names.hpp"
+#include "vm/sched/scheduler.hpp"
 
 namespace ipos::tools::lsp {
 namespace {
@@ -133,7 +135,26 @@ Json semantic_tokens(Workspace& workspace, const Json& params) {
   return row.json();
 }
 
-// Above main(): run and debug the program, and the plants that have it.
+// "at most 18 commands, 9 ms": what a function costs, as `ipos build --time` says, at the rates that P938 and P939 have in the factory.
+std::string title_of(const compiler::FunctionTiming& timing) {
+  using Kind = compiler::FunctionTiming::Kind;
+  const char* const what = timing.kind == Kind::Turn ? "a turn: " : timing.kind == Kind::Interrupt ? "an interrupt: " : "";
+  if (!timing.commands) return fmt::format("{}no bound: {}", what, timing.because);
+  return fmt::format("{}at most {} commands{}", what, *timing.commands, timing.ms ? fmt::format(", {} ms", *timing.ms) : "");
+}
+
+void add_timings(const Program& program, const compiler::SourceFile* file, Encoding encoding, Json& out) {
+  const auto& image = program.compiled.image;
+  if (!image) return;
+  for (const compiler::FunctionTiming& timing :
+       compiler::function_timings(*image, program.compiled.unit->variables, vm::Rates{}.commands))
+    for (const IndexedSymbol& symbol : program.index.symbols)
+      if (symbol.kind == SymbolKind::Function && symbol.name == timing.name && symbol.definition && symbol.definition->file == file)
+        out.push_back(lens(range_of(file->text, symbol.definition->begin, symbol.definition->end, encoding), title_of(timing), "",
+                           Json::array()));
+}
+
+// Above main(): run and debug the program, and the plants that have it; above every function what it costs.
 Json code_lenses(Workspace& workspace, const Json& params) {
   Json out = Json::array();
   const Program* program = nullptr;
@@ -155,6 +176,7 @@ Json code_lenses(Workspace& workspace, const Json& params) {
                          {where["uri"], where["range"]["start"]}));
     }
   }
+  add_timings(*program, file, workspace.encoding, out);
   return out;
 }
 
