@@ -1,6 +1,7 @@
 // The syntax tree: what the source says, before any name has a meaning. Every node keeps its span.
 #pragma once
 
+#include <map>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -206,6 +207,11 @@ using Decl = std::variant<VariableDecl, StructDecl, FunctionDecl, AliasDecl, Pra
 struct Program {
   std::vector<Decl> declarations;  // in source order
   Arena arena;                     // of statements and expressions
+  struct LeftOut {
+    Span name;
+    Span condition;
+  };
+  std::map<std::string_view, LeftOut> left_out;  // names that are declared only where a condition leaves them out
 };
 
 }  // namespace ipos::compiler::ast

@@ -3,6 +3,7 @@
 #include "compiler/parse/foreign_words.hpp"
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <unordered_set>
 
@@ -163,6 +164,9 @@ class Translator {
   bool keyword(const Token& token) {
     for (const Keyword& row : kKeywords)
       if (equal_but_for_case(token.text, row.spelling) && stands_for(row.kind)) return meant(row);
+    if (depth_ > 0 && ends_statement(before()) && is_word_or_number(next()) && kind(at_ + 2) == TokenKind::Colon &&
+        stdlib::nearest(token.text, std::array<std::string_view, 1>{"case"}) == "case")
+      return meant({"case", TokenKind::Case});
     // Misspelt heads of statements have something in their brackets and a statement after them.
     if (depth_ <= 0 || !filled_bracket(at_ + 1) || !statement_at(behind_bracket(at_ + 1))) return false;
     static constexpr std::string_view kHeads[] = {"if", "while", "for", "switch"};

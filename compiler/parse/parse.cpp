@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/parse/foreign_forms.hpp"
 #include "compiler/parse/foreign_words.hpp"
 #include "compiler/parse/indentation.hpp"
 #include "compiler/parse/token_feed.hpp"
@@ -17,9 +18,11 @@ ast::Program parse_program(SourceMap& map, const SourceFile& main, const Preproc
 
 ast::Program parse_tokens(const SourceMap& map, const PreprocessedText& text, Diagnostics& diagnostics) {
   ast::Program program;
+  for (const auto& [name, place] : text.record.left_out) program.left_out.emplace(name, ast::Program::LeftOut{place.name, place.condition});
   TypeNames types;
   for (const stdlib::Structure& structure : stdlib::structures()) types.emplace(structure.name);
-  const std::vector<Token> tokens = without_foreign_words(text.tokens, diagnostics);
+  std::deque<std::string> texts;
+  const std::vector<Token> tokens = without_foreign_words(without_foreign_forms(text.tokens, texts, diagnostics), diagnostics);
   Builder build(program, types, map, diagnostics, misses_closing_brace(tokens));
   TokenFeed feed(tokens, types, diagnostics, unclosed_brace(tokens, map));
   // The result says no more than the diagnostics do.

@@ -107,7 +107,9 @@ bool TokenFeed::explain_inside(const Expected& expected) {
   const bool statement_fits = expected.has(Kind::S_If);
   if (found().kind == TokenKind::End && brace_reported_) return true;
   if (found().kind == TokenKind::Else && statement_fits) {
-    diagnostics_.report(Diag::StrayElse, found().span);
+    Diagnostic& error = diagnostics_.report(Diag::StrayElse, found().span);
+    if (const std::optional<size_t> semicolon = ended_if())
+      error.notes.push_back({tokens_[*semicolon].span, "this ';' is all that the 'if' before it does; leave it out"});
     return true;
   }
   if (previous.kind == TokenKind::Sizeof) {
@@ -133,6 +135,25 @@ bool TokenFeed::explain_inside(const Expected& expected) {
     return true;
   }
   return false;
+}
+
+// The ';' right behind the brackets of the last `if` of this block, if that is what ended it.
+std::optional<size_t> TokenFeed::ended_if() const {
+  int level = 0;
+  for (size_t n = last_; n-- > 1;) {
+    const TokenKind kind = tokens_[n].kind;
+    if (kind == TokenKind::RightBrace) ++level;
+    if (kind == TokenKind::LeftBrace && --level < 0) return std::nullopt;
+    if (level != 0 || kind != TokenKind::Semicolon || tokens_[n - 1].kind != TokenKind::RightParen) continue;
+    int depth = 0;
+    size_t open = n - 1;
+    for (; open > 0; --open) {
+      if (tokens_[open].kind == TokenKind::RightParen) ++depth;
+      if (tokens_[open].kind == TokenKind::LeftParen && --depth == 0) break;
+    }
+    if (open > 0 && tokens_[open - 1].kind == TokenKind::If) return n;
+  }
+  return std::nullopt;
 }
 
 bool TokenFeed::explain_outside(const Expected& expected) {

@@ -59,6 +59,7 @@ class TokenFeed {
 
   // syntax_error.cpp
   void explain(const Expected& expected);
+  std::optional<size_t> ended_if() const;
   bool explain_inside(const Expected& expected);
   bool explain_outside(const Expected& expected);
   bool explain_parameters();

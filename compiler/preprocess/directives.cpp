@@ -46,7 +46,9 @@ void Preprocessor::directive(const Token& hash) {
       const std::string_view best = stdlib::nearest(word.text, known);
       if (!best.empty()) message.notes.push_back({{}, "did you mean '#" + std::string(best) + "'?"});
     }
-    read_line();
+    left_out_.clear();
+    const Line line = read_line();
+    if (!live() && word.text == "define" && !line.empty() && line[0].kind == TokenKind::Name) note_left_out(line[0]);
     return;
   }
   (this->*row->run)(word);

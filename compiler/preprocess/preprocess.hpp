@@ -2,9 +2,11 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compiler/diag/diag.hpp"
@@ -39,8 +41,13 @@ struct PreprocessRecord {
     Span header;  // with its quotes or brackets
     const SourceFile* file;
   };
+  struct LeftOut {
+    Span name;
+    Span condition;  // the #if that leaves it out, itself or an #else of it
+  };
   std::vector<Definition> definitions;
   std::vector<Use> uses;
+  std::map<std::string_view, LeftOut> left_out;  // names that are declared or defined there, the first place of each
   std::vector<Include> includes;
 };
 

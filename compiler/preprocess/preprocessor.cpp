@@ -1,6 +1,8 @@
 // The flow of tokens through the preprocessor, and the limits that keep hostile input finite.
 #include "compiler/preprocess/preprocessor.hpp"
 
+#include <algorithm>
+
 namespace ipos::compiler {
 namespace {
 
@@ -47,8 +49,8 @@ void Preprocessor::run_file(const SourceFile& file) {
       close();
     else if (token.kind == TokenKind::Hash && token.line_start)
       directive(token);
-    else if (token.kind != TokenKind::Newline && live())
-      emit(token);
+    else if (token.kind != TokenKind::Newline)
+      live() ? emit(token) : leave_out(token);
   }
 }
 
@@ -101,6 +103,28 @@ Preprocessor::Line Preprocessor::read_line() {
 
 void Preprocessor::emit(const Token& token) {
   if (!macros_.expand(token, result_.tokens, token_budget_)) too_much(token.span);
+}
+
+// Two words side by side declare, as in `long a, b;`; a word with empty brackets before a '{' is a function.
+void Preprocessor::leave_out(const Token& token) {
+  if (token.kind != TokenKind::Semicolon && token.kind != TokenKind::LeftBrace && token.kind != TokenKind::RightBrace) {
+    left_out_.push_back(token);
+    return;
+  }
+  const Line line = std::move(left_out_);
+  left_out_.clear();
+  const auto is_name = [&](size_t n) { return n < line.size() && line[n].kind == TokenKind::Name; };
+  if (token.kind == TokenKind::LeftBrace && line.size() == 3 && is_name(0) && line[1].kind == TokenKind::LeftParen)
+    note_left_out(line[0]);
+  if (token.kind != TokenKind::Semicolon || !is_name(0) || !is_name(1)) return;
+  for (size_t n = 1; n < line.size(); ++n)
+    if (is_name(n) && (is_name(n - 1) || line[n - 1].kind == TokenKind::Comma)) note_left_out(line[n]);
+}
+
+void Preprocessor::note_left_out(const Token& name) {
+  const std::vector<Condition>& conditions = files_.back().conditions;
+  const auto outermost = std::find_if(conditions.begin(), conditions.end(), [](const Condition& each) { return !each.live; });
+  result_.record.left_out.try_emplace(name.text, PreprocessRecord::LeftOut{name.span, outermost->directive.span});
 }
 
 Preprocessor::Line Preprocessor::expand(const Line& line) {

@@ -47,6 +47,8 @@ class Preprocessor {
   void emit(const Token& token);
   Line expand(const Line& line);
   bool live() const;
+  void leave_out(const Token& token);
+  void note_left_out(const Token& name);
   void give_up(std::string limit, Span place);
   void too_much(Span place);
 
@@ -77,6 +79,7 @@ class Preprocessor {
   PreprocessedText result_;
   Macros macros_;
   std::vector<OpenFile> files_;
+  Line left_out_;  // tokens of the declaration or statement that is being left out
   std::set<std::string_view> long_names_;  // those warned of
   size_t token_budget_ = 0;
   size_t byte_budget_ = 0;

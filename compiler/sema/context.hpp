@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "compiler/ast/ast.hpp"
 #include "compiler/diag/diag.hpp"
 #include "compiler/sema/checked.hpp"
 #include "compiler/sema/scope.hpp"
@@ -48,6 +49,7 @@ struct Context {
   std::vector<AccessPlace> indirect = {};  // uses of a variable that is known at run time only
   size_t function = SIZE_MAX;  // index of the function being checked
   size_t order = 0;            // its place among the declarations
+  const ast::Program* tree = nullptr;
   bool overflown = false;      // a range has no room for all its variables, which was reported
 
   // False: the range has no room for the variable, so its number is that of others.

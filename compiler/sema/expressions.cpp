@@ -306,6 +306,11 @@ void ExpressionChecker::unknown_name(std::string_view name, Span span, bool func
   if (!context_.reported_names.emplace(name).second) return;
   Diagnostic& message = context_.diagnostics.report(function ? Diag::UnknownFunction : Diag::UnknownName,
                                                     span, {std::string(name)});
+  if (const auto place = context_.tree->left_out.find(name); place != context_.tree->left_out.end()) {
+    message.notes.push_back({place->second.name, fmt::format("'{}' stands here, in a part that is left out", name)});
+    message.notes.push_back({place->second.condition, "by this condition"});
+    return;
+  }
   // A search of all names for each of many unknown ones would take long, and nobody reads it.
   if (context_.diagnostics.error_count() > kMostExplained) return;
   context_.scope.explain_unknown(message, name, function, context_.unit.has(stdlib::Trait::NewVariables));

@@ -66,6 +66,7 @@ class ExpressionChecker {
   checked::ExprPtr load(const ast::Expr& expr);
   // The object on the left of an assignment; reports what cannot be assigned to.
   std::optional<Object> target(const ast::Expr& expr);
+  void explain_port(Diagnostic& message, Location at) const;
   checked::ExprPtr assign(const ast::Assign& node, std::optional<Object> target, Span span);
   checked::ExprPtr copy_structure(const ast::Assign& node, Object target, Span span);
   checked::ExprPtr call(const ast::Call& node, Span span);

@@ -1,8 +1,10 @@
 // Objects: names, members, elements and *p, resolved to places; and the record of who uses which variable.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "compiler/sema/expressions.hpp"
 #include "compiler/sema/fold.hpp"
+#include "stdlib/header_names.hpp"
 #include "stdlib/language_tables.hpp"
 #include "stdlib/spelling.hpp"
 #include "stdlib/system_variables.hpp"
@@ -55,6 +57,17 @@ std::optional<Object> ExpressionChecker::object(const ast::Expr& expr) {
   return std::nullopt;
 }
 
+// DO01 is an expression of the standard headers, which have SET_DO01 and CLEAR_DO01 for an output.
+void ExpressionChecker::explain_port(Diagnostic& message, Location at) const {
+  if (!at.in_macro()) return;
+  const std::string name(context_.sources.expansion(at).macro);
+  const bool b_headers = context_.unit.has(stdlib::Trait::NewVariables);
+  std::vector<std::string> orders;
+  for (const char* order : {"SET_", "CLEAR_"})
+    if (stdlib::find_header_name(order + name, b_headers) != nullptr) orders.push_back(order + name);
+  if (!orders.empty()) message.notes.push_back({{}, fmt::format("'{}' changes it", fmt::join(orders, "' or '"))});
+}
+
 std::optional<Object> ExpressionChecker::target(const ast::Expr& expr) {
   const bool place =
       std::holds_alternative<ast::Name>(expr.node) || std::holds_alternative<ast::Member>(expr.node) ||
@@ -63,7 +76,7 @@ std::optional<Object> ExpressionChecker::target(const ast::Expr& expr) {
   if (std::holds_alternative<ast::Number>(expr.node))
     context_.diagnostics.report(Diag::NotAssignable, expr.span, {"a constant"});
   else if (value(expr) != nullptr)
-    context_.diagnostics.report(Diag::NotAssignable, expr.span, {"the result of an expression"});
+    explain_port(context_.diagnostics.report(Diag::NotAssignable, expr.span, {"the result of an expression"}), expr.span.begin);
   return std::nullopt;
 }
 

@@ -103,8 +103,10 @@ class SystemCallChecker {
     if (function_.mnemonic == "TASK2" && context_.unit.tasks < 2) missing = "task 2";
     if (function_.mnemonic == "VARINT" && context_.unit.tasks < 3) missing = "variable interrupts";
     if (missing.empty()) return true;
-    context_.diagnostics.report(Diag::MissingTask, call_.function.span,
-                                {std::string(call_.function.text), missing, std::string(context_.unit.name)});
+    const stdlib::UnitType& other = stdlib::unit_with(stdlib::Trait::NewVariables);
+    context_.diagnostics
+        .report(Diag::MissingTask, call_.function.span, {std::string(call_.function.text), missing, std::string(context_.unit.name)})
+        .notes.push_back({{}, fmt::format("{} has it: '--unit {}', or '#include <constb.h>'", other.title, other.name)});
     return false;
   }
 

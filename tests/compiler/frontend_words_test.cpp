@@ -59,6 +59,84 @@ TEST(FrontendWords, OperatorsOfPlcs) {
   expect_statement_read_as("x = a AND b OR NOT c;", "x = a && b || !c;", {"E0181", "E0181", "E0181"});
 }
 
+// Forms of several words: what is told, and what the rest is read as. Nothing else is said of the program.
+struct Form {
+  const char* wrong;
+  const char* right;
+  std::string told;
+};
+
+TEST(FrontendForms, AreReadAsWhatWasMeant) {
+  const Form forms[] = {
+      {"const long MAX = 5; main() { H0 = MAX; }", "main() { H0 = 5; }", "'const' belongs to another language; write '#define MAX 5'"},
+      {"static const int A = 0x10, B = -2; main() { H0 = A + B; }", "main() { H0 = 0x10 + -2; }",
+       "'const' belongs to another language; write '#define A 0x10' and '#define B -2'"},
+      {"enum { IDLE, RUN }; main() { switch (H0) { case IDLE: break; case RUN: H1 = RUN; } }",
+       "main() { switch (H0) { case 0: break; case 1: H1 = 1; } }",
+       "'enum' belongs to another language; write '#define IDLE 0' and '#define RUN 1'"},
+      {"enum State { IDLE = 3, RUN, STOP = -1, } s; enum State t; main() { t = RUN; s = STOP; }",
+       "long s; long t; main() { t = 4; s = -1; }",
+       "'enum' belongs to another language; write '#define IDLE 3' and '#define RUN 4' and so on"},
+      {"typedef enum { OFF, ON } SWITCH; SWITCH a; main() { a = ON; }", "long a; main() { a = 1; }",
+       "'enum' belongs to another language; write '#define OFF 0' and '#define ON 1'"},
+      {"main() { H0 = 16#FF; }", "main() { H0 = 255; }", "'16#FF' belongs to another language; write 0xFF"},
+      {"main() { H0 = 16#1A_00; }", "main() { H0 = 6656; }", "'16#1A_00' belongs to another language; write 0x1A_00"},
+      {"main() { H0 = 2#1010; }", "main() { H0 = 10; }", "'2#1010' belongs to another language; write 0b1010"},
+      {"main() { H0 = 8#17; }", "main() { H0 = 15; }", "'8#17' belongs to another language; write 15"},
+      {"main() { H0 = T#1s; }", "main() { H0 = 1000; }", "'T#1s' belongs to another language; times are numbers of milliseconds: write 1000"},
+      {"main() { H0 = time#1m30s; }", "main() { H0 = 90000; }",
+       "'time#1m30s' belongs to another language; times are numbers of milliseconds: write 90000"},
+      {"main() { H0 = T#250ms; }", "main() { H0 = 250; }", "'T#250ms' belongs to another language; times are numbers of milliseconds: write 250"},
+      {"long a; main() { a.3 = 1; }", "long a; main() { a = 1; }", "'a.3' belongs to another language; write '_BitSet(a, 3)'"},
+      {"long v[4]; main() { v[2].31 = 0; }", "long v[4]; main() { v[2] = 0; }",
+       "'v[2].31' belongs to another language; write '_BitClear(v[2], 31)'"},
+      {"main() { if (H483.2) H1 = 2; }", "main() { if (H483) H1 = 2; }", "'H483.2' belongs to another language; bit 2 of it is 'H483 & 0x4'"},
+      {"main() { _BitSet(H481.1); }", "main() { _BitSet(H481, 1); }", "'H481.1' belongs to another language; write '_BitSet(H481, 1)'"},
+      {"VAR a, b : INT; c : ARRAY [0..3] OF DINT := 5; END_VAR main() { a = b; }", "long a, b; long c; main() { a = b; }",
+       "'VAR' belongs to another language; variables are declared outside of functions: 'long a;'"},
+      {"var_global retain n : int end_var; main() { n = 1; }", "long n; main() { n = 1; }",
+       "'var_global' belongs to another language; variables are declared outside of functions: 'long n;'"},
+  };
+  for (const Form& form : forms) {
+    FrontendRun meant(form.right), run(form.wrong);
+    meant.parse();
+    run.parse();
+    ASSERT_EQ(run.diagnostics.all().size(), 1U) << form.wrong;
+    EXPECT_EQ(run.diagnostics.all()[0].text, form.told) << form.wrong;
+    EXPECT_EQ(shape_of_program(run), shape_of_program(meant)) << form.wrong;
+  }
+}
+
+// Names and signs that only look like such a form stay what they are.
+TEST(FrontendForms, LeaveProgramsAlone) {
+  for (const char* program :
+       {"long VAR; main() { VAR = 1; }", "long T; main() { T = 1; H0 = T; }", "main() { VAR(); } VAR() { }",
+        "long a; typedef struct { long x; } S; S s; main() { s.x = a; }", "long a, b; main() { a = b ** 2; }"})
+    expect_read_as(program, program, {});
+  // What is not whole is told as before.
+  expect_read_as("main() { H0 = .5; }", "main() { H0 = 0; }", {"E0108"});
+  expect_read_as("main() { H0 = 1.5; }", "main() { H0 = 0; }", {"E0108"});
+}
+
+TEST(FrontendForms, MisspeltCase) {
+  expect_statement_read_as("switch (x) { csae 1: y; break; caes LIMIT: z; }", "switch (x) { case 1: y; break; case LIMIT: z; }",
+                           {"E0180", "E0180"});
+}
+
+// The ';' behind the brackets of an `if` is shown where its `else` has none.
+TEST(FrontendForms, ElseBehindAnEmptyIf) {
+  FrontendRun run("main() {\n  if (H0 > 1); H1 = 1;\n  else H1 = 2;\n}");
+  run.parse();
+  ASSERT_EQ(run.diagnostics.all().size(), 1U);
+  const compiler::Diagnostic& error = run.diagnostics.all()[0];
+  ASSERT_EQ(error.notes.size(), 1U);
+  const compiler::Position at = run.map.position(error.notes[0].span.begin);
+  EXPECT_EQ(std::pair(at.line, at.column), std::pair(2U, 14U));
+  FrontendRun other("main() {\n  if (H0) { H1 = 1; }\n  H2 = f(H1);\n  else H1 = 2;\n}");
+  other.parse();
+  EXPECT_TRUE(other.diagnostics.all()[0].notes.empty());
+}
+
 TEST(FrontendWords, BlocksOfPlcs) {
   const std::vector<std::string> one = {"E0181"};
   const std::vector<std::string> two = {"E0181", "E0181"};
