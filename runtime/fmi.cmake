@@ -3,13 +3,13 @@
 ipos_layer(fmi
   FOLDERS runtime/fmi
   SOURCES fmi/names.cpp fmi/types.cpp fmi/variables.cpp fmi/package.cpp fmi/resources.cpp fmi/instance.cpp fmi/saved.cpp fmi/can_operations.cpp
-          fmi/bus_terminal.cpp
+          fmi/bus_terminal.cpp fmi/line_terminal.cpp fmi/terminals.cpp
           fmi/component.cpp
   USES library
   LIBS fmt::fmt)
 ipos_not_hot(ipos_fmi)
 
-set(functions fmi2.cpp fmi3.cpp)
+set(functions fmi2.cpp fmi3.cpp fmi3_clocks.cpp)
 list(TRANSFORM functions PREPEND ${CMAKE_CURRENT_LIST_DIR}/fmi/)
 add_library(ipos_fmu_functions OBJECT ${functions})
 target_link_libraries(ipos_fmu_functions PRIVATE ipos_options PUBLIC ipos::fmi)

@@ -2,7 +2,7 @@
 # is what C++ sees of it. Machine code (vm/jit) is not in it: Debian's asmjit cannot go into a shared library.
 ipos_layer(library
   FOLDERS runtime/library
-  SOURCES library/contents.cpp library/signal_id.cpp library/bus_tap.cpp library/action.cpp library/instance.cpp
+  SOURCES library/contents.cpp library/signal_id.cpp library/bus_tap.cpp library/can_nodes.cpp library/action.cpp library/instance.cpp
           library/session.cpp
   USES runtime compiler stdlib
   LIBS fmt::fmt)

@@ -7,7 +7,10 @@ namespace ipos::fmi {
 namespace {
 
 constexpr size_t kHeadBytes = 8, kTransmitHead = 16;
-constexpr uint8_t kRate = 1, kArbitrationLost = 4, kBufferAndRepeat = 1;
+constexpr size_t kRateBytes = kHeadBytes + 5, kBehaviorBytes = kHeadBytes + 2, kStatusBytes = kHeadBytes + 1, kIdBytes = kHeadBytes + 4;
+constexpr size_t kBusErrorBytes = 15, kIsSender = 14;
+constexpr uint8_t kRate = 1, kXlRate = 3, kArbitrationLost = 4, kBufferAndRepeat = 1, kDiscardAndNotify = 2;
+constexpr uint8_t kPrimary = 1, kSecondary = 2;
 constexpr size_t kMostQuoted = 200;  // bytes of a format error (ours)
 
 void put(std::string& out, uint64_t number, int bytes) {
@@ -23,6 +26,37 @@ std::string head(CanOperation kind, size_t length) {
   put(out, static_cast<uint32_t>(kind), 4);
   put(out, length, 4);
   return out;
+}
+
+std::string of_identifier(CanOperation kind, uint32_t id) {
+  std::string out = head(kind, kIdBytes);
+  put(out, id, 4);
+  return out;
+}
+
+// Tables "Overview of the available configuration parameters" and "... Arbitration Lost Behavior values". Rates of CAN FD and XL are
+// read and change nothing.
+void read_configuration(ReadOperation& read) {
+  const std::string_view bytes = read.bytes;
+  if (bytes.size() <= kHeadBytes) return;
+  const auto parameter = static_cast<uint8_t>(bytes[kHeadBytes]);
+  if (parameter >= kRate && parameter <= kXlRate && bytes.size() == kRateBytes) {
+    const uint32_t baud = take(bytes, kHeadBytes + 1, 4);
+    read.is_good = baud != 0;
+    if (parameter == kRate) read.baud = baud;
+  } else if (parameter == kArbitrationLost && bytes.size() == kBehaviorBytes) {
+    const auto behavior = static_cast<uint8_t>(bytes[kHeadBytes + 1]);
+    read.is_good = behavior == kBufferAndRepeat || behavior == kDiscardAndNotify;
+    read.discards = behavior == kDiscardAndNotify;
+  }
+}
+
+// Table "Overview of the available status values": 1, 2, 3.
+void read_status(ReadOperation& read) {
+  if (read.bytes.size() != kStatusBytes) return;
+  const auto status = static_cast<uint8_t>(read.bytes[kHeadBytes]);
+  read.is_good = status >= 1 && status <= 3;
+  if (read.is_good) read.state = static_cast<runtime::ErrorState>(status - 1);
 }
 
 void read_transmit(ReadOperation& read) {
@@ -47,15 +81,15 @@ ReadOperation read_operation(std::string_view bytes) {
   switch (read.kind) {
     case CanOperation::Transmit: read_transmit(read); break;
     case CanOperation::Confirm:
-    case CanOperation::ArbitrationLost: read.is_good = bytes.size() == 12; break;
+    case CanOperation::ArbitrationLost: read.is_good = bytes.size() == kIdBytes; break;
     case CanOperation::BusError:
-      read.is_good = bytes.size() == 15;
-      read.is_sender = read.is_good && bytes[14] != 0;
+      read.is_good = bytes.size() == kBusErrorBytes;
+      read.is_sender = read.is_good && bytes[kIsSender] != 0;
       break;
-    case CanOperation::FormatError:
-    case CanOperation::Configuration:
-    case CanOperation::Status:
-    case CanOperation::Wakeup: read.is_good = true; break;
+    case CanOperation::Configuration: read_configuration(read); break;
+    case CanOperation::Status: read_status(read); break;
+    case CanOperation::Wakeup: read.is_good = bytes.size() == kHeadBytes; break;
+    case CanOperation::FormatError: read.is_good = true; break;  // never answered by another one
   }
   return read;
 }
@@ -73,11 +107,25 @@ std::string transmit_operation(const runtime::Frame& frame) {
   return out;
 }
 
+std::string confirm_operation(uint32_t id) { return of_identifier(CanOperation::Confirm, id); }
+std::string arbitration_lost_operation(uint32_t id) { return of_identifier(CanOperation::ArbitrationLost, id); }
+
+std::string bus_error_operation(uint32_t id, BusErrorCode code, bool primary, bool is_sender) {
+  std::string out = head(CanOperation::BusError, kBusErrorBytes);
+  put(out, id, 4);
+  put(out, static_cast<uint8_t>(code), 1);
+  put(out, primary ? kPrimary : kSecondary, 1);
+  put(out, is_sender ? 1 : 0, 1);
+  return out;
+}
+
+std::string wakeup_operation() { return head(CanOperation::Wakeup, kHeadBytes); }
+
 std::string configuration_operations(uint32_t baud) {
-  std::string out = head(CanOperation::Configuration, kHeadBytes + 5);
+  std::string out = head(CanOperation::Configuration, kRateBytes);
   put(out, kRate, 1);
   put(out, baud, 4);
-  out += head(CanOperation::Configuration, kHeadBytes + 2);
+  out += head(CanOperation::Configuration, kBehaviorBytes);
   put(out, kArbitrationLost, 1);
   put(out, kBufferAndRepeat, 1);
   return out;

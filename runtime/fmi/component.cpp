@@ -149,6 +149,12 @@ int step(void* component, double from, double length, Step& done) noexcept {
   });
 }
 
+int no_values(void* component, Call call, size_t count) noexcept {
+  return enter(component, call, [&](Instance& instance, Component&) {
+    return count == 0 ? Status::Ok : instance.fail("the variable is of another type");
+  });
+}
+
 int refuse(void* component, Call call, const char* why) noexcept {
   return enter(component, call, [&](Instance& instance, Component&) { return instance.fail(why); });
 }

@@ -54,7 +54,7 @@ int get_values(void* component, const uint32_t* references, size_t count, Value*
   return enter(component, Call::Get, [&](Instance& instance, Component&) {
     if (count != 0 && (references == nullptr || values == nullptr)) return instance.fail("a pointer is null");
     if (count != value_count) return instance.fail("there are not as many values as value references");
-    return instance.get({references, count}, types, [&](size_t n, double value) { values[n] = static_cast<Value>(value); });
+    return instance.get({references, count}, types, values);
   });
 }
 template <typename Value>
@@ -75,6 +75,9 @@ int serialize(void* component, void* state, uint8_t* bytes, size_t size) noexcep
 int deserialize(void* component, const uint8_t* bytes, size_t size, void** state) noexcept;
 int set_logging(void* component, bool on, size_t count, const char* const* categories) noexcept;
 int step(void* component, double from, double length, Step& done) noexcept;
+
+// Values of a type that no variable has.
+int no_values(void* component, Call call, size_t count) noexcept;
 
 // A call that asks for what the FMU does not offer.
 int refuse(void* component, Call call, const char* why) noexcept;

@@ -1,5 +1,5 @@
 // The functions of FMI 3.0 for co-simulation, as chapters 2.2, 2.3 and 4.2 of the specification declare them. Those of other
-// interfaces are there and refuse.
+// interfaces are there and refuse. Clocks and what is clocked: fmi3_clocks.cpp.
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -32,13 +32,6 @@ void* refuse_interface(LogMessage logger, void* environment) {
   } catch (...) {
   }
   return nullptr;
-}
-
-// Values of types that no variable has.
-int none(void* instance, Call call, size_t count) {
-  return enter(instance, call, [&](Instance& inside, Component&) {
-    return count == 0 ? Status::Ok : inside.fail("the variable is of another type");
-  });
 }
 
 }  // namespace
@@ -119,55 +112,11 @@ IPOS_FMI3_VALUES(UInt64, uint64_t)
 IPOS_FMI3_VALUES(Boolean, bool, Type::Boolean)
 
 IPOS_FMI_EXPORT int fmi3GetString(void* instance, const Reference[], size_t count, Text[], size_t) {
-  return none(instance, Call::Get, count);
+  return no_values(instance, Call::Get, count);
 }
 IPOS_FMI_EXPORT int fmi3SetString(void* instance, const Reference[], size_t count, const Text[], size_t) {
-  return none(instance, Call::Set, count);
+  return no_values(instance, Call::Set, count);
 }
-// Members of terminals: what is clocked, and the clocks.
-template <typename Do>
-int for_members(void* instance, TerminalMember member, const Reference references[], size_t count, bool has_values, Do action) noexcept {
-  return enter(instance, Call::Clocks, [&](Instance& inside, Component&) {
-    if (count != 0 && (references == nullptr || !has_values)) return inside.fail(kNullPointer);
-    std::vector<BusTerminal*> found;
-    for (size_t n = 0; n < count; ++n) {
-      found.push_back(inside.terminal(references[n], member));
-      if (found.back() == nullptr) return Status::Error;
-    }
-    for (size_t n = 0; n < count; ++n) action(*found[n], n);
-    return Status::Ok;
-  });
-}
-
-IPOS_FMI_EXPORT int fmi3GetBinary(void* instance, const Reference references[], size_t count, size_t sizes[],
-                                  const uint8_t* values[], size_t value_count) {
-  return for_members(instance, TerminalMember::TxData, references, count, sizes != nullptr && values != nullptr && count == value_count,
-                     [&](const BusTerminal& terminal, size_t n) {
-                       sizes[n] = terminal.buffers.out.size();
-                       values[n] = reinterpret_cast<const uint8_t*>(terminal.buffers.out.data());
-                     });
-}
-IPOS_FMI_EXPORT int fmi3SetBinary(void* instance, const Reference references[], size_t count, const size_t sizes[],
-                                  const uint8_t* const values[], size_t value_count) {
-  bool good = sizes != nullptr && values != nullptr && count == value_count;
-  for (size_t n = 0; good && n < count; ++n) good = sizes[n] == 0 || values[n] != nullptr;
-  return for_members(instance, TerminalMember::RxData, references, count, good, [&](BusTerminal& terminal, size_t n) {
-    terminal.buffers.in.assign(reinterpret_cast<const char*>(values[n]), sizes[n]);
-  });
-}
-// Active once for what there is.
-IPOS_FMI_EXPORT int fmi3GetClock(void* instance, const Reference references[], size_t count, bool values[]) {
-  return for_members(instance, TerminalMember::TxClock, references, count, values != nullptr, [&](BusTerminal& terminal, size_t n) {
-    values[n] = !terminal.buffers.out.empty() && !terminal.fetched;
-    terminal.fetched |= values[n];
-  });
-}
-IPOS_FMI_EXPORT int fmi3SetClock(void* instance, const Reference references[], size_t count, const bool values[]) {
-  return for_members(instance, TerminalMember::RxClock, references, count, values != nullptr, [&](BusTerminal& terminal, size_t n) {
-    terminal.buffers.rx_active = values[n];
-  });
-}
-
 IPOS_FMI_EXPORT int fmi3GetFMUState(void* instance, void** state) { return get_state(instance, state); }
 IPOS_FMI_EXPORT int fmi3SetFMUState(void* instance, void* state) { return set_state(instance, state); }
 IPOS_FMI_EXPORT int fmi3FreeFMUState(void* instance, void** state) { return free_state(instance, state); }
@@ -232,20 +181,6 @@ IPOS_FMI_EXPORT int fmi3GetAdjointDerivative(void* instance, const Reference[], 
 IPOS_FMI_EXPORT int fmi3GetOutputDerivatives(void* instance, const Reference[], size_t, const int32_t[], double[], size_t) {
   return refuse(instance, Call::OutputDerivatives, kNotOffered);
 }
-
-// Intervals and shifts of clocks.
-#define IPOS_FMI3_CLOCK(name, ...)                                                                       \
-  IPOS_FMI_EXPORT int fmi3##name(void* instance, const Reference[], size_t count __VA_OPT__(, ) __VA_ARGS__) { \
-    return none(instance, Call::Clocks, count);                                                          \
-  }
-IPOS_FMI3_CLOCK(GetIntervalDecimal, double[], int[])
-IPOS_FMI3_CLOCK(GetIntervalFraction, uint64_t[], uint64_t[], int[])
-IPOS_FMI3_CLOCK(GetShiftDecimal, double[])
-IPOS_FMI3_CLOCK(GetShiftFraction, uint64_t[], uint64_t[])
-IPOS_FMI3_CLOCK(SetIntervalDecimal, const double[])
-IPOS_FMI3_CLOCK(SetIntervalFraction, const uint64_t[], const uint64_t[])
-IPOS_FMI3_CLOCK(SetShiftDecimal, const double[])
-IPOS_FMI3_CLOCK(SetShiftFraction, const uint64_t[], const uint64_t[])
 
 // Of model exchange and scheduled execution: no instance of these can be made.
 #define IPOS_FMI3_OTHER(name, ...) \

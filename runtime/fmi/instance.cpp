@@ -34,9 +34,8 @@ constexpr double kLongest = 9e9;       // s: what 64 bits of ns can count
 constexpr double kTimesAgree = 1e-6;   // s, of what the importer and the instance take for the present (ours)
 constexpr Time kSnaps = 100;           // ns: so near to a full millisecond is meant to be one; times are sums of doubles (ours)
 
-// Of a time since the start.
-Time whole_time(double seconds) {
-  const Time ns = std::llround(seconds * 1e9);
+// Of a time since the start: a plant has ticks.
+Time whole_time(Time ns) {
   const Time full = (ns + kMillisecond / 2) / kMillisecond * kMillisecond;
   return std::abs(ns - full) <= kSnaps ? full : ns;
 }
@@ -77,8 +76,9 @@ std::optional<std::string> Instance::open() {
   auto session = library::Session::open(contents_, true);
   if (!session) return session.error().front().text;
   session_ = *std::move(session);
-  terminals_ = version_ == 2 ? std::vector<BusTerminal>() : terminals_of(std::as_const(*session_).plant().file());
-  for (BusTerminal& terminal : terminals_) terminal.begin(*session_);
+  terminals_.clear();
+  if (version_ != 2) terminals_ = terminals_of(std::as_const(*session_).plant().file(), package_.choice);
+  for (const auto& terminal : terminals_) terminal->begin(*session_);
   return find_variables();
 }
 
@@ -132,6 +132,12 @@ std::vector<uint8_t> Instance::faults() const {
   return faults;
 }
 
+// Of a line alone each nanosecond counts.
+Time Instance::plant_time(double time) const {
+  const Time ns = std::llround((time - start_) * 1e9);
+  return is_line() ? ns : whole_time(ns);
+}
+
 // Up to and including `until`, as ipos run and the C library do: what is set then acts in the millisecond that begins there, and
 // its tick, a millisecond later, is the first that sees it.
 void Instance::run(Time until, bool returns_early, Step& done) {
@@ -159,8 +165,8 @@ Status Instance::step(double from, double length, bool returns_early, Step& done
   const double until = from + length;
   if (until - start_ > kLongest) return fail(fmt::format("{} s is beyond what a plant can count", until));
   done = {until, false, false};
-  run(whole_time(until - start_), returns_early, done);
-  for (BusTerminal& terminal : terminals_) done.sends |= terminal.collect(*session_);
+  run(plant_time(until), returns_early, done);
+  for (const auto& terminal : terminals_) done.sends |= terminal->collect(*session_) && !terminal->is_of_the_line();
   time_ = done.reached;
   if (logging_) tell_journal();
   return Status::Ok;
@@ -176,57 +182,38 @@ void Instance::tell_journal() {
   }
 }
 
-BusTerminal* Instance::terminal(uint32_t reference, TerminalMember member) {
-  const size_t first = variables_.all.size() + 1;
-  const size_t place = reference < first ? SIZE_MAX : reference - first;
-  if (place < terminals_.size() * kTerminalMembers && place % kTerminalMembers == static_cast<size_t>(member))
-    return &terminals_[place / kTerminalMembers];
-  fail(fmt::format("value reference {} is nothing of the kind", reference));
-  return nullptr;
-}
-
-Status Instance::update() {
-  for (BusTerminal& terminal : terminals_) {
-    if (std::exchange(terminal.fetched, false)) terminal.buffers.out.clear();
-    if (!std::exchange(terminal.buffers.rx_active, false)) continue;
-    for (const std::string& wrong : terminal.take_in(*session_)) fail(Status::Warning, kWarnings, wrong);
-  }
-  return Status::Ok;
-}
-
 Status Instance::check(std::span<const uint32_t> references, Types types) {
   for (const uint32_t reference : references) {
-    if (reference > variables_.all.size()) return fail(fmt::format("no variable has the value reference {}", reference));
-    const Type type = reference == 0 ? Type::Real : variables_.all[reference - 1].type;
+    const bool is_member = notified_terminal(reference) != nullptr;
+    if (reference > variables_.all.size() && !is_member) return fail(fmt::format("no variable has the value reference {}", reference));
+    const Type type = is_member ? Type::Boolean : reference == 0 ? Type::Real : variables_.all[reference - 1].type;
     if (std::find(types.begin(), types.end(), type) == types.end())
-      return fail(fmt::format("{} is of another type", reference == 0 ? "time" : variables_.all[reference - 1].name));
+      return fail(fmt::format("{} is of another type", is_member        ? "BusNotifications"
+                                                       : reference == 0 ? "time"
+                                                                        : variables_.all[reference - 1].name));
   }
   return Status::Ok;
 }
 
-Status Instance::get(std::span<const uint32_t> references, Types types,
-                     const std::function<void(size_t, double)>& give) {
-  if (const Status wrong = check(references, types); wrong != Status::Ok) return wrong;
-  for (size_t n = 0; n < references.size(); ++n) {
-    if (references[n] == 0) {
-      give(n, time_);
-      continue;
-    }
-    const Variable& variable = variables_.all[references[n] - 1];
-    const double value = variable.value_of(variable.signal.read());
-    give(n, variable.type == Type::Real ? value : std::clamp<double>(value, INT32_MIN, INT32_MAX));
-  }
-  return Status::Ok;
+// Of one that check() has let through.
+double Instance::value_of(uint32_t reference) const {
+  if (reference == 0) return time_;
+  if (reference > variables_.all.size()) return notified_terminal(reference)->buffers.notified ? 1 : 0;
+  const Variable& variable = variables_.all[reference - 1];
+  const double value = variable.value_of(variable.signal.read());
+  return variable.type == Type::Real ? value : std::clamp<double>(value, INT32_MIN, INT32_MAX);
 }
 
 Status Instance::set(std::span<const uint32_t> references, Types types, const std::function<double(size_t)>& value) {
   if (const Status wrong = check(references, types); wrong != Status::Ok) return wrong;
   for (const uint32_t reference : references)
-    if (reference == 0 || !variables_.all[reference - 1].is_settable())
+    if (notified_terminal(reference) == nullptr && (reference == 0 || !variables_.all[reference - 1].is_settable()))
       return fail(fmt::format("{} cannot be set", reference == 0 ? "time" : variables_.all[reference - 1].name));
   Status worst = Status::Ok;
-  for (size_t n = 0; n < references.size(); ++n)
-    worst = std::max(worst, set(variables_.all[references[n] - 1], value(n)));
+  for (size_t n = 0; n < references.size(); ++n) {
+    BusTerminal* terminal = notified_terminal(references[n]);
+    worst = std::max(worst, terminal != nullptr ? set_notified(*terminal, value(n) != 0) : set(variables_.all[references[n] - 1], value(n)));
+  }
   return worst;
 }
 

@@ -68,11 +68,24 @@ class Instance {
 
   // Values by their references, all of which must be of one of these types.
   using Types = std::initializer_list<Type>;
-  Status get(std::span<const uint32_t> references, Types types, const std::function<void(size_t n, double value)>& give);
+  template <typename Value>
+  Status get(std::span<const uint32_t> references, Types types, Value* values);
   Status set(std::span<const uint32_t> references, Types types, const std::function<double(size_t n)>& value);
 
-  // Terminals of lines: references follow those of the variables, four a terminal. Null: none of this member, and the log says so.
-  BusTerminal* terminal(uint32_t reference, TerminalMember member);
+  // Variables of terminals: their references follow those of the others, kTerminalMembers a terminal.
+  struct Member {
+    BusTerminal* terminal;
+    TerminalMember kind;
+    bool is_of_the_line() const { return terminal->is_of_the_line(); }
+  };
+  std::optional<Member> member(uint32_t reference) const;
+  // Of a countdown, as FMI numbers what is known of it.
+  struct Interval {
+    enum class Known : uint8_t { NotYet, Unchanged, Changed };
+    Known known = Known::NotYet;
+    runtime::Time length = 0;  // from now on
+  };
+  Interval interval(BusTerminal& terminal);
   // The operations that have come act, and what was fetched is forgotten.
   Status update();
 
@@ -89,7 +102,12 @@ class Instance {
   std::optional<std::string> open();
   std::optional<std::string> find_variables();
   Status check(std::span<const uint32_t> references, Types types);
+  double value_of(uint32_t reference) const;
+  BusTerminal* notified_terminal(uint32_t reference) const;
+  Status set_notified(BusTerminal& terminal, bool on);
   Status set(const Variable& variable, double value);
+  runtime::Time plant_time(double time) const;
+  bool is_line() const { return package_.choice.line.has_value(); }
   void run(runtime::Time until, bool returns_early, Step& done);
   std::vector<uint8_t> faults() const;
   void tell_journal();
@@ -104,9 +122,16 @@ class Instance {
   double start_ = 0, time_ = 0;
   std::unique_ptr<library::Session> session_;
   Variables variables_;
-  std::vector<BusTerminal> terminals_;  // none in FMI 2.0
+  Terminals terminals_;  // none in FMI 2.0
   size_t told_ = 0;  // entries of the journal
 };
+
+template <typename Value>
+Status Instance::get(std::span<const uint32_t> references, Types types, Value* values) {
+  if (const Status wrong = check(references, types); wrong != Status::Ok) return wrong;
+  for (size_t n = 0; n < references.size(); ++n) values[n] = static_cast<Value>(value_of(references[n]));
+  return Status::Ok;
+}
 
 struct SavedInstance {
   static constexpr uint64_t kAlive = 0x69706F73464D5531;

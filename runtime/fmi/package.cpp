@@ -75,6 +75,16 @@ std::optional<StationFile> read_station_file(std::string_view text) {
   return StationFile{number - 1, std::move(file)};
 }
 
+// "2 sbus"
+std::optional<LineChoice> read_line(const std::string& text) {
+  LineChoice line;
+  const char* const last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data(), last, line.terminals);
+  if (error != std::errc() || end == last || *end != ' ' || line.terminals < 1 || line.terminals > kMostTerminals) return std::nullopt;
+  line.bus.assign(end + 1, last);
+  return line;
+}
+
 }  // namespace
 
 std::map<std::string, std::string> files_of(Package& package, const std::string& program) {
@@ -96,6 +106,7 @@ std::map<std::string, std::string> files_of(Package& package, const std::string&
       list += fmt::format("memory {} {}\n", n + 1, memory_name(n));
     }
   }
+  if (const auto& line = package.choice.line) list += fmt::format("line {} {}\n", line->terminals, line->bus);
   for (const std::string& station : package.choice.stations) list += fmt::format("station {}\n", station);
   for (const std::string& signal : package.choice.signals) list += fmt::format("signals {}\n", signal);
   files[std::string(kList)] = list;
@@ -124,6 +135,9 @@ tl::expected<Package, std::string> read_package(const std::string& folder) {
       package.choice.stations.push_back(value);
     } else if (key == "signals") {
       package.choice.signals.push_back(value);
+    } else if (key == "line") {
+      package.choice.line = read_line(value);
+      if (!package.choice.line) return wrong();
     } else if (key == "token") {
       package.token = value;
     } else {
@@ -148,6 +162,7 @@ tl::expected<library::Contents, std::string> contents_of(const Package& package)
   source.path = kPlant;
   source.text = package.plant;
   source.given.emplace();
+  if (package.choice.line) source.lone_line = package.choice.line->bus;
   for (const Package::Station& station : package.stations) source.given->push_back({station.program, station.memory_file});
   auto contents = library::Contents::read(source);
   if (contents) return *std::move(contents);

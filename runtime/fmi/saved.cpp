@@ -12,7 +12,7 @@
 namespace ipos::fmi {
 namespace {
 
-constexpr std::string_view kHead = "iposfmu\1";  // the last is the version
+constexpr std::string_view kHead = "iposfmu\2";  // the last is the version
 
 void put(std::string& out, uint64_t number) {
   for (int n = 0; n < 8; ++n) out += static_cast<char>(number >> (8 * n));
@@ -51,7 +51,7 @@ std::unique_ptr<SavedInstance> Instance::save() const {
   saved->start = start_;
   saved->time = time_;
   saved->plant = session_->save();
-  for (const BusTerminal& terminal : terminals_) saved->terminals.push_back(terminal.buffers);
+  for (const auto& terminal : terminals_) saved->terminals.push_back(terminal->buffers);
   return saved;
 }
 
@@ -62,9 +62,12 @@ Status Instance::restore(const SavedInstance& saved) {
     if (session_->restore(saved.plant, why) != library::Session::Restored::Done) return fail(why);
     told_ = std::as_const(*session_).plant().journal().entries().size();
     if (const auto missing = find_variables()) return fail(*missing);
-    for (const BusTerminal& terminal : terminals_) terminal.forget_heard(*session_);
+    for (const auto& terminal : terminals_) terminal->forget_heard(*session_);
   }
-  for (size_t n = 0; n < terminals_.size() && n < saved.terminals.size(); ++n) terminals_[n].buffers = saved.terminals[n];
+  for (size_t n = 0; n < terminals_.size() && n < saved.terminals.size(); ++n) {
+    terminals_[n]->buffers = saved.terminals[n];
+    terminals_[n]->announced.reset();
+  }
   stage_ = static_cast<Stage>(saved.stage);
   start_ = saved.start;
   time_ = saved.time;
@@ -82,6 +85,7 @@ std::string Instance::to_bytes(const SavedInstance& saved) const {
     put_text(out, terminal.out);
     put_text(out, terminal.in);
     put(out, terminal.rx_active ? 1 : 0);
+    put(out, terminal.notified ? 1 : 0);
     put(out, terminal.sent.size());
     for (const auto& [id, operation] : terminal.sent) {
       put(out, id);
@@ -119,6 +123,7 @@ std::unique_ptr<SavedInstance> Instance::from_bytes(std::string_view bytes) {
     terminal.out = take_text(bytes);
     terminal.in = take_text(bytes);
     terminal.rx_active = take_number(bytes) != 0;
+    terminal.notified = take_number(bytes) != 0;
     for (uint64_t left = take_number(bytes); left != 0 && !bytes.empty(); --left) {
       const auto id = static_cast<uint32_t>(take_number(bytes));
       terminal.sent[id] = take_text(bytes);

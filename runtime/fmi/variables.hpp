@@ -46,10 +46,18 @@ struct Variables {
   std::vector<runtime::PhysicalUnit> units;  // each that a variable names
 };
 
+// A CAN line of the plant without its stations, with terminals for other people's nodes.
+struct LineChoice {
+  std::string bus;
+  uint32_t terminals = 2;
+};
+inline constexpr uint32_t kMostTerminals = 64;  // ours
+
 // What goes into an FMU.
 struct Choice {
   std::vector<std::string> stations;  // their names; empty: all
   std::vector<std::string> signals;   // names and patterns: outputs beside the usual ones
+  std::optional<LineChoice> line{};   // instead of the plant
 };
 
 // The error says which name of the choice stands for nothing.

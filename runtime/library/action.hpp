@@ -25,8 +25,14 @@ enum class Act : uint8_t {
   Send,        // number: bus; value: tag; frame
   SerialSend,  // number: bus; bytes
   LineFault,   // bytes: the text of the tables
+  // Of CanNodes; signal.number: node
+  NodesJoin,     // number: bus; value: how many
+  NodeSend,      // number: bus; frame
+  NodeRate,      // number: bus; value: bit/s
+  NodeState,     // number: bus; value: runtime::ErrorState
+  NodeDiscards,  // number: bus; value: 1: what loses the arbitration is given up
 };
-inline constexpr Act kLastAct = Act::LineFault;
+inline constexpr Act kLastAct = Act::NodeDiscards;
 
 struct Action {
   runtime::Time at = 0;

@@ -67,6 +67,7 @@ class CanTap final : private runtime::CanObserver, private runtime::CanNode {
   bool is_full() const { return queued_ >= runtime::kSendQueueLimit; }
   Kept<Heard>& heard() { return heard_; }
   const Kept<Heard>& heard() const { return heard_; }
+  runtime::CanLine& line() { return line_; }
   const runtime::CanLine& line() const { return line_; }
 
  private:

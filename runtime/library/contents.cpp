@@ -12,6 +12,7 @@
 
 #include "compiler/compile.hpp"
 #include "runtime/plant/all_mistakes.hpp"
+#include "runtime/plant_file/line_alone.hpp"
 #include "runtime/unit/program_image.hpp"
 #include "stdlib/unit_types.hpp"
 
@@ -124,7 +125,7 @@ tl::expected<Contents, Mistakes> Contents::read(const Source& source) {
     }
     runtime::PlantFileResult read = runtime::read_plant_file(text);
     errors = std::move(read.errors);
-    contents.file_ = std::move(read.plant);
+    contents.file_ = source.lone_line ? runtime::line_alone(read.plant, *source.lone_line) : std::move(read.plant);
   }
   for (runtime::StationConfig& station : contents.file_.stations) {
     station.nvram_use = source.write_memory ? runtime::FileUse::Write : runtime::FileUse::Look;
@@ -207,6 +208,7 @@ void Contents::take_given(const std::vector<Source::Given>& given, std::vector<r
 void Contents::identify(std::string_view text, const Source& source) {
   Fingerprint print;
   print.add(text);
+  if (source.lone_line) print.add(*source.lone_line);
   for (const auto& program : programs_) {
     const std::vector<uint8_t> bytes = program ? vm::write_image(*program) : std::vector<uint8_t>();
     print.add({reinterpret_cast<const char*>(bytes.data()), bytes.size()});

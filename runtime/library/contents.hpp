@@ -37,6 +37,7 @@ struct Source {
     std::string memory;
   };
   std::optional<std::vector<Given>> given{};
+  std::optional<std::string> lone_line{};  // of the plant only this line, without its stations
   uint32_t commands_a_ms = 0;  // 0: as P938 and P939 say
   uint64_t seed = 0;
 };

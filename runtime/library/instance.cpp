@@ -42,6 +42,7 @@ Instance::Instance(std::unique_ptr<runtime::Plant> plant) : plant_(std::move(pla
         *bus, [this](runtime::CanBus& can) { can_.push_back(std::make_unique<CanTap>(can.line())); },
         [this](runtime::SerialBus& serial) { serial_.push_back(std::make_unique<SerialTap>(serial.line())); },
         [this](runtime::ProfibusBus& dp) { profibus_.push_back(std::make_unique<ProfibusTap>(dp.line())); });
+  nodes_.resize(can_.size());
 }
 
 Refusal Instance::touch(const Action& action) {
@@ -73,6 +74,31 @@ Refusal Instance::send(const Action& action) {
   return can_[action.number]->send(*frame, static_cast<uint32_t>(action.value));
 }
 
+Refusal Instance::tell_node(const Action& action) {
+  if (action.number >= can_.size()) return std::string(kStrange);
+  std::unique_ptr<CanNodes>& nodes = nodes_[action.number];
+  if (action.act == Act::NodesJoin) {
+    if (nodes || action.value < 1 || action.value > static_cast<int64_t>(CanNodes::kMost)) return std::string(kStrange);
+    nodes = std::make_unique<CanNodes>(can_[action.number]->line(), static_cast<size_t>(action.value));
+    return std::nullopt;
+  }
+  const size_t node = action.signal.number;
+  if (!nodes || node >= nodes->count()) return std::string(kStrange);
+  switch (action.act) {
+    case Act::NodeSend: {
+      const auto frame = frame_of(action.bytes);
+      return frame ? nodes->send(plant_->now(), node, *frame) : std::string(kStrange);
+    }
+    case Act::NodeRate: return nodes->set_rate(node, action.value);
+    case Act::NodeState:
+      if (action.value < 0 || action.value > static_cast<int64_t>(runtime::ErrorState::BusOff)) return std::string(kStrange);
+      nodes->set_state(node, static_cast<runtime::ErrorState>(action.value));
+      break;
+    default: nodes->set_discards(node, action.value != 0); break;
+  }
+  return std::nullopt;
+}
+
 Refusal Instance::plant_faults(const Action& action) {
   const std::string text(action.bytes.begin(), action.bytes.end());
   runtime::PlantFileResult read = runtime::read_fault_tables(text, plant_->file());
@@ -93,6 +119,11 @@ Refusal Instance::perform(const Action& action) {
     case Act::Send:
     case Act::SerialSend: return send(action);
     case Act::LineFault: return plant_faults(action);
+    case Act::NodesJoin:
+    case Act::NodeSend:
+    case Act::NodeRate:
+    case Act::NodeState:
+    case Act::NodeDiscards: return tell_node(action);
     default: break;
   }
   if (const runtime::Gateway* gateway = gateway_of(*plant_, action.signal.station)) {

@@ -6,6 +6,7 @@
 
 #include "runtime/library/bus_tap.hpp"
 #include "runtime/library/action.hpp"
+#include "runtime/library/can_nodes.hpp"
 #include "runtime/plant/actions.hpp"
 
 namespace ipos::library {
@@ -23,6 +24,7 @@ class Instance {
   runtime::Plant& plant() { return *plant_; }
   const runtime::Plant& plant() const { return *plant_; }
   std::vector<std::unique_ptr<CanTap>>& can() { return can_; }
+  CanNodes* nodes(size_t line) { return line < nodes_.size() ? nodes_[line].get() : nullptr; }  // null: none have joined
   std::vector<std::unique_ptr<SerialTap>>& serial() { return serial_; }
   std::vector<std::unique_ptr<ProfibusTap>>& profibus() { return profibus_; }
 
@@ -41,11 +43,13 @@ class Instance {
  private:
   Refusal touch(const Action& action);
   Refusal send(const Action& action);
+  Refusal tell_node(const Action& action);
   Refusal plant_faults(const Action& action);
 
   std::unique_ptr<runtime::Plant> plant_;
   runtime::PlantActions actions_;
   std::vector<std::unique_ptr<CanTap>> can_;
+  std::vector<std::unique_ptr<CanNodes>> nodes_;  // one a CAN line
   std::vector<std::unique_ptr<SerialTap>> serial_;
   std::vector<std::unique_ptr<ProfibusTap>> profibus_;
 };

@@ -10,12 +10,6 @@ namespace {
 
 using fmi::CanOperation;
 
-std::string bytes(std::initializer_list<int> values) {
-  std::string out;
-  for (const int value : values) out += static_cast<char>(value);
-  return out;
-}
-
 runtime::Frame some_frame() {
   runtime::Frame frame;
   frame.id = 0x20B;
@@ -103,9 +97,11 @@ main() {
 
 class Node {
  public:
-  Node(const char* program, Told& told) : resources_(kPlant, program, {{}, {"u.H430", "u.H440"}}) {
+  Node(const char* program, Told& told, bool notified = false) : resources_(kPlant, program, {{}, {"u.H430", "u.H440"}}) {
     first_ = static_cast<uint32_t>(resources_.variables().all.size() + 1);
     c_ = resources_.make3(told, true);
+    const uint32_t notifications = first_ + 4;
+    EXPECT_EQ(fmi3SetBoolean(c_, &notifications, 1, &notified, 1), kOk);
     EXPECT_EQ(fmi3EnterInitializationMode(c_, false, 0, 0, false, 0), kOk);
     EXPECT_EQ(fmi3ExitInitializationMode(c_), kOk);
   }
@@ -188,9 +184,13 @@ TEST(FmiBus, TwoStationsInTwoFmusMeet) {
   EXPECT_EQ(told.text, "");
 }
 
-TEST(FmiBus, WhatABusSimulationLosesIsSentAgainAndNonsenseIsTold) {
+// With the parameter BusNotifications; without it a node sends and forgets, and takes no offence at what it is told.
+class FmiBusNotifications : public ::testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(OnAndOff, FmiBusNotifications, ::testing::Bool());
+
+TEST_P(FmiBusNotifications, WhatABusSimulationLosesIsSentAgainAndNonsenseIsTold) {
   Told told;
-  Node node(kSender, told);
+  Node node(kSender, told, GetParam());
   node.fetch();
   node.update();
   std::string out;
@@ -203,7 +203,11 @@ TEST(FmiBus, WhatABusSimulationLosesIsSentAgainAndNonsenseIsTold) {
   const auto low = static_cast<int>(id & 0xFF), high = static_cast<int>(id >> 8);
   node.give(bytes({0x31, 0, 0, 0, 15, 0, 0, 0, low, high, 0, 0, 4, 1, 1}));
   node.update();
-  EXPECT_EQ(node.fetch(), out);
+  EXPECT_EQ(node.fetch(), GetParam() ? out : "") << "a bus error of its own";
+  node.update();
+  node.give(bytes({0x30, 0, 0, 0, 12, 0, 0, 0, low, high, 0, 0}));
+  node.update();
+  EXPECT_EQ(node.fetch(), GetParam() ? out : "") << "an arbitration lost";
   node.update();
   node.give(bytes({0x20, 0, 0, 0, 12, 0, 0, 0, low, high, 0, 0}));
   node.update();
@@ -249,10 +253,18 @@ TEST(FmiBus, MembersAreToldApart) {
   EXPECT_EQ(fmi3EnterEventMode(c), kOk);
   const auto first = static_cast<uint32_t>(resources.variables().all.size() + 1);
   bool active = false;
-  for (uint32_t member = 0; member < 5; ++member) {
+  for (uint32_t member = 0; member < 6; ++member) {
     const uint32_t reference = first + member;
+    active = false;
+    double seconds = 0;
+    int known = 0;
     EXPECT_EQ(fmi3GetClock(c, &reference, 1, &active), member == 3 ? kOk : kError) << member;
     EXPECT_EQ(fmi3SetClock(c, &reference, 1, &active), member == 2 ? kOk : kError) << member;
+    EXPECT_EQ(fmi3GetIntervalDecimal(c, &reference, 1, &seconds, &known), kError) << "its clock is no countdown";
+    active = member == 4;
+    EXPECT_EQ(fmi3GetBoolean(c, &reference, 1, &active, 1), member == 4 ? kOk : kError) << member;
+    EXPECT_FALSE(active) << "BusNotifications is off at first";
+    EXPECT_EQ(fmi3SetBoolean(c, &reference, 1, &active, 1), kError) << "a fixed parameter, and the node runs";
   }
   const uint32_t data = first + 1;
   EXPECT_EQ(fmi3GetBinary(c, &data, 1, nullptr, nullptr, 1), kError);

@@ -59,12 +59,13 @@ class Fmu:
             kind = element[0] if self.version == 2 else element
             self.variables[element.get("name")] = Variable(element, kind)
 
-    def make(self):
-        return Instance(self)
+    def make(self, events=False):
+        return Instance(self, events)
 
 
 class Instance:
-    def __init__(self, fmu):
+    def __init__(self, fmu, events=False):
+        self.events = events
         self.fmu, self.version, self.library, self.told = fmu, fmu.version, fmu.library, []
         resources = fmu.folder / "resources"
         make = getattr(self.library, "fmi2Instantiate" if self.version == 2 else "fmi3InstantiateCoSimulation")
@@ -75,7 +76,7 @@ class Instance:
             made = make(b"one", 1, fmu.token.encode(), resources.as_uri().encode(), ctypes.byref(self._callbacks), 0, 0)
         else:
             self._logger = LOGGER3(lambda environment, status, category, text: self.told.append(text.decode()))
-            made = make(b"one", fmu.token.encode(), (str(resources) + "/").encode(), False, False, False, False, None,
+            made = make(b"one", fmu.token.encode(), (str(resources) + "/").encode(), False, True, events, False, None,
                         ctypes.c_size_t(0), None, self._logger, None)
         assert made, self.told
         self.component = ctypes.c_void_p(made)
@@ -112,14 +113,16 @@ class Instance:
         self._values("Set", self.fmu.variables[name], value)
 
     def step(self, length):
-        until = self.time + length
+        """True: the FMU asks for event mode."""
+        until, flags = self.time + length, (ctypes.c_bool * 3)()
         if self.version == 2:
             self.call("DoStep", ctypes.c_double(self.time), ctypes.c_double(length), 1)
         else:
-            flags, reached = (ctypes.c_bool * 3)(), ctypes.c_double()
+            reached = ctypes.c_double()
             places = [ctypes.byref(flags, n) for n in range(3)]
             self.call("DoStep", ctypes.c_double(self.time), ctypes.c_double(length), True, *places, ctypes.byref(reached))
         self.time = until
+        return flags[0]
 
     def state(self):
         state = ctypes.c_void_p()

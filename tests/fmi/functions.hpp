@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <vector>
@@ -76,6 +77,8 @@ int fmi3GetBoolean(void*, const uint32_t*, size_t, bool*, size_t);
 int fmi3SetBoolean(void*, const uint32_t*, size_t, const bool*, size_t);
 int fmi3GetClock(void*, const uint32_t*, size_t, bool*);
 int fmi3SetClock(void*, const uint32_t*, size_t, const bool*);
+int fmi3GetIntervalDecimal(void*, const uint32_t*, size_t, double*, int*);
+int fmi3GetIntervalFraction(void*, const uint32_t*, size_t, uint64_t*, uint64_t*, int*);
 int fmi3GetBinary(void*, const uint32_t*, size_t, size_t*, const uint8_t**, size_t);
 int fmi3SetBinary(void*, const uint32_t*, size_t, const size_t*, const uint8_t* const*, size_t);
 int fmi3GetFMUState(void*, void**);
@@ -88,6 +91,12 @@ int fmi3EnterConfigurationMode(void*);
 namespace ipos::tests {
 
 enum { kOk = 0, kDiscard = 2, kError = 3 };
+
+inline std::string bytes(std::initializer_list<int> values) {
+  std::string out;
+  for (const int value : values) out += static_cast<char>(value);
+  return out;
+}
 
 // What the instances of a test have logged, each in a line.
 struct Told {

@@ -26,6 +26,13 @@ class Player {
   }
 
  private:
+  // Of a CAN line alone.
+  static const Resources& line() {
+    static const Resources made("[[bus]]\nname = \"b\"\nkind = \"can\"\n[[station]]\nname = \"u\"\nunit = \"mdxb\"\nsbus = \"b\"\n"
+                                "[[fault]]\nbus = \"b\"\nkind = \"corrupt\"\nrate = 100\n",
+                                "", {{}, {}, fmi::LineChoice{"b", 3}});
+    return made;
+  }
   static const Resources& resources() {
     static const Resources made(turning_with_program(), "long n; main() { while (1) { n = n + 1; } }\n");
     return made;
@@ -58,14 +65,90 @@ class Player {
   }
 
   void call() {
-    const size_t n = byte() % 2;
+    const size_t n = byte() % kInstances;
     void*& c = instances_[n];
     if (c == nullptr) {
-      c = n == 0 ? resources().make2(told_) : resources().make3(told_, byte() % 2 == 0, byte() % 2 == 0);
+      c = n == 0 ? resources().make2(told_) : n == 1 ? resources().make3(told_, byte() % 2 == 0, byte() % 2 == 0) : line().make3(told_, true);
       if (c == nullptr) broken_ = "no instance was made";
     }
     void* used = byte() % 64 == 0 ? nullptr : c;
-    n == 0 ? call2(used) : call3(used);
+    n == 0 ? call2(used) : n == 1 ? call3(used) : call_line(used);
+  }
+
+  // An operation as the table has it, or nearly, or anything.
+  std::string operation() {
+    constexpr std::array<uint8_t, 10> kCodes = {0x10, 0x10, 0x10, 0x20, 0x30, 0x31, 0x40, 0x41, 0x42, 0x01};
+    std::string out(byte() % 8 == 0 ? byte() % 32 : 8, 0);
+    const uint8_t code = kCodes[byte() % kCodes.size()];
+    if (out.empty()) return out;
+    out[0] = static_cast<char>(code);
+    if (out.size() != 8) return out;
+    if (code == 0x10) {
+      const uint8_t length = byte() % 10;
+      out += std::string({static_cast<char>(byte()), static_cast<char>(byte() % 9), 0, 0, static_cast<char>(byte() % 8 == 0), static_cast<char>(byte() % 8 == 0),
+                          static_cast<char>(length), 0});
+      for (uint8_t n = 0; n < length; ++n) out += static_cast<char>(byte());
+    } else if (code == 0x40) {
+      const uint8_t kind = byte() % 6;
+      out += static_cast<char>(kind);
+      if (kind == 4) out += static_cast<char>(byte() % 4);
+      else
+        for (int n = 0; n < 4; ++n) out += static_cast<char>(n < 3 ? byte() : 0);
+    } else if (code == 0x41) {
+      out += static_cast<char>(byte() % 5);
+    }
+    out[4] = static_cast<char>(out.size());
+    return out;
+  }
+
+  void call_line(void* c) {
+    const auto first = static_cast<uint32_t>(line().variables().all.size() + 1);
+    const uint32_t vr = byte() % 16 == 0 ? byte() : first + byte() % 16;
+    const uint32_t terminal = first + byte() % 3 * 5, data = terminal, rx = terminal + 2, out = terminal + 1, tx = terminal + 3;
+    const bool none = c == nullptr, active = true;
+    double value = 0, reached = 0;
+    int known = 0;
+    uint64_t counters[2] = {};
+    bool flags[5] = {};
+    size_t size = 0;
+    switch (byte() % 18) {
+      case 0: return expect(fmi3EnterInitializationMode(c, false, 0, 0, false, 0), none);
+      case 1: return expect(fmi3ExitInitializationMode(c), none);
+      case 2: return expect(fmi3EnterEventMode(c), none);
+      case 3: return expect(fmi3EnterStepMode(c), none);
+      case 4: return expect(fmi3UpdateDiscreteStates(c, &flags[0], &flags[1], &flags[2], &flags[3], &flags[4], &value), none);
+      case 5: return expect(fmi3GetIntervalDecimal(c, &vr, 1, &value, byte() % 16 == 0 ? nullptr : &known), none);
+      case 6: return expect(fmi3GetIntervalFraction(c, &tx, 1, &counters[0], &counters[1], &known), none);
+      case 7: return expect(fmi3GetBoolean(c, &vr, 1, flags, 1), none);
+      case 8: return expect(fmi3SetBoolean(c, &vr, 1, flags, 1), none);
+      case 9: return expect(fmi3GetFMUState(c, &states_[2]), none);
+      case 10: {
+        const int status = fmi3SetFMUState(c, states_[2]);
+        const uint32_t time = 0;
+        if (status == kOk && fmi3GetFloat64(c, &time, 1, &time_[2], 1) != kOk) time_[2] = 0;
+        return expect(status, none);
+      }
+      case 11: time_[2] = 0; return expect(fmi3Reset(c), none);
+      case 12: return byte() % 4 == 0 ? drop(2) : expect(fmi3SetClock(c, &tx, 1, &active), none);
+      case 13: {
+        const uint8_t* bytes = nullptr;
+        return expect(fmi3GetBinary(c, &out, 1, &size, &bytes, 1), none);
+      }
+      case 14:
+      case 15: {
+        std::string given = operation();
+        while (byte() % 3 == 0) given += operation();
+        size = given.size();
+        const auto* bytes = reinterpret_cast<const uint8_t*>(given.data());
+        expect(fmi3SetClock(c, &rx, 1, &active), none);
+        return expect(fmi3SetBinary(c, &data, 1, &size, byte() % 32 == 0 ? nullptr : &bytes, 1), none);
+      }
+      default: {
+        const int status = fmi3DoStep(c, time_[2], kLongestStep * byte() / 255, true, &flags[0], &flags[1], &flags[2], &reached);
+        if (status == kOk) time_[2] = reached;
+        return expect(status, none);
+      }
+    }
   }
 
   void step2(void* c) {
@@ -156,8 +239,9 @@ class Player {
 
   std::span<const uint8_t> left_;
   Told told_;
-  std::array<void*, 2> instances_{}, states_{};
-  std::array<double, 2> time_{};
+  static constexpr size_t kInstances = 3;  // of FMI 2.0, of FMI 3.0, and a line alone
+  std::array<void*, kInstances> instances_{}, states_{};
+  std::array<double, kInstances> time_{};
   const char* broken_ = nullptr;
 };
 

@@ -17,7 +17,7 @@ Resources::Resources(const std::string& plant, const std::string& program, fmi::
   package_.plant = plant;
   package_.choice = std::move(choice);
   const size_t stations = runtime::read_plant_file(plant).plant.stations.size();
-  package_.stations.resize(stations);
+  if (!package_.choice.line) package_.stations.resize(stations);
   if (!program.empty()) {
     compiler::CompileOptions options;
     options.unit = runtime::read_plant_file(plant).plant.stations.front().unit;

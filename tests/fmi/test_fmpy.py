@@ -23,13 +23,14 @@ def test_it_has_no_findings(plant, version, tmp_path):
     assert validate_fmu(str(write_fmu(plant, tmp_path / "a.fmu", version))) == []
 
 
-def test_a_terminal_is_as_the_schema_wants_it(tmp_path):
+@pytest.mark.parametrize("more", [[], ["--bus", "sbus", "--terminals", "3"]], ids=["node", "bus"])
+def test_a_terminal_is_as_the_schema_wants_it(more, tmp_path):
     import zipfile
     from lxml import etree
     from fmpy.validation import validate_fmu
     (tmp_path / "p.toml").write_text('[[bus]]\nname = "sbus"\nkind = "can"\nport = "fmi"\n'
                                      '[[station]]\nname = "u"\nunit = "mdxb"\nsbus = "sbus"\n')
-    out = write_fmu(tmp_path / "p.toml", tmp_path / "a.fmu", 3)
+    out = write_fmu(tmp_path / "p.toml", tmp_path / "a.fmu", 3, *more)
     assert validate_fmu(str(out)) == []
     text = zipfile.ZipFile(out).read("terminalsAndIcons/terminalsAndIcons.xml")
     schema = etree.XMLSchema(file=f"{PATH}/fmpy/schema/fmi3/fmi3TerminalsAndIcons.xsd")

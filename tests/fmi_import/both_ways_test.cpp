@@ -8,7 +8,6 @@
 
 #include "runtime/fmi_import/fmu_model.hpp"
 #include "tests/fmi_import/folder.hpp"
-#include "tests/harness/contains.hpp"
 
 namespace ipos::tests {
 namespace {
@@ -46,7 +45,6 @@ TEST(FmuBothWays, ImportAndExportGiveTheSameCurves) {
     const std::string whole = read_text(folder.path() / "p.toml");
     folder.write("alone.toml", whole.substr(0, whole.find("[[machine]]")));
     const CommandResult made = folder.run({"fmu", "alone.toml", "-o", "drive.fmu", "--fmi", fmt::format("{}", version)});
-    if (contains(made.err, "'fmu' is no verb")) GTEST_SKIP() << made.err;
     ASSERT_EQ(made.exit_code, 0) << made.err;
     Stepped spring(folder.path() / fmt::format("spring{}.fmu", version), "torque", "speed");
     Stepped drive(folder.path() / "drive.fmu", "u.shaft_speed", "u.torque");

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "runtime/fmi/bus_terminal.hpp"
 
@@ -11,7 +10,7 @@ namespace ipos::tools {
 // "sbus.Rx_Data" as an FMU names it.
 std::string member_name(const fmi::BusTerminal& terminal, fmi::TerminalMember member);
 
-std::string terminals_xml(const std::vector<fmi::BusTerminal>& terminals);
-std::string manifest_xml();
+std::string terminals_xml(const fmi::Terminals& terminals);
+std::string manifest_xml(bool is_bus_simulation);
 
 }  // namespace ipos::tools

@@ -23,7 +23,7 @@ constexpr std::string_view kTimeUnit = "s";
 // By value reference - 1; 0 is the time, which stands first.
 class Writer {
  public:
-  Writer(const Dialect& dialect, const Variables& variables, const std::vector<fmi::BusTerminal>& terminals)
+  Writer(const Dialect& dialect, const Variables& variables, const fmi::Terminals& terminals)
       : dialect_(dialect), variables_(variables), terminals_(terminals) {}
 
   std::string write(const DescriptionHead& head) {
@@ -32,7 +32,7 @@ class Writer {
          "variableNamingConvention=\"structured\">",
          dialect_.version, xml_attribute(head.model), dialect_.token, xml_attribute(head.token), IPOS_VERSION);
     line("  <CoSimulation modelIdentifier=\"{}\" canHandleVariableCommunicationStepSize=\"true\" {}=\"true\" {}=\"true\"{}/>",
-         head.identifier, dialect_.get_state, dialect_.serialize, dialect_.more);
+         head.identifier, dialect_.get_state, dialect_.serialize, head.is_line ? dialect_.more_of_a_line : dialect_.more);
     write_units();
     write_types();
     line("  <LogCategories>");
@@ -44,7 +44,7 @@ class Writer {
     line("  <ModelVariables>");
     write_time();
     for (size_t n = 0; n < variables_.all.size(); ++n) write_variable(variables_.all[n], n + 1);
-    for (size_t n = 0; n < terminals_.size(); ++n) write_terminal(terminals_[n], first_member(n));
+    for (size_t n = 0; n < terminals_.size(); ++n) write_terminal(*terminals_[n], first_member(n));
     line("  </ModelVariables>");
     write_structure();
     line("</fmiModelDescription>");
@@ -136,7 +136,13 @@ class Writer {
     line("    <Binary name=\"{}\" valueReference=\"{}\" causality=\"output\" variability=\"discrete\" initial=\"calculated\" clocks=\"{}\" {}/>",
          name(TxData), first + 1, first + 3, kMime);
     line("    <Clock name=\"{}\" valueReference=\"{}\" causality=\"input\" intervalVariability=\"triggered\"/>", name(RxClock), first + 2);
-    line("    <Clock name=\"{}\" valueReference=\"{}\" causality=\"output\" intervalVariability=\"triggered\"/>", name(TxClock), first + 3);
+    const bool is_of_the_line = terminal.is_of_the_line();
+    line("    <Clock name=\"{}\" valueReference=\"{}\" {}/>", name(TxClock), first + 3,
+         is_of_the_line ? "causality=\"input\" intervalVariability=\"countdown\" supportsFraction=\"true\""
+                        : "causality=\"output\" intervalVariability=\"triggered\"");
+    line("    <Boolean name=\"{}\" valueReference=\"{}\" {}/>", name(BusNotifications), first + 4,
+         is_of_the_line ? "causality=\"output\" variability=\"constant\" start=\"true\""
+                        : "causality=\"parameter\" variability=\"fixed\" start=\"false\"");
   }
 
   void write_structure() {
@@ -147,12 +153,25 @@ class Writer {
     } else {
       // What is set at a communication point acts in the step that follows: no output depends on an input of its time.
       for_each_output([&](size_t n) { line("    <Output valueReference=\"{}\" dependencies=\"\"/>", n + 1); });
-      for (size_t n = 0; n < terminals_.size(); ++n)
-        for (const size_t member : {first_member(n) + 1, first_member(n) + 3}) line("    <Output valueReference=\"{}\"/>", member);
+      using enum fmi::TerminalMember;
+      for_each_member(TxData, [&](bool, size_t member) { line("    <Output valueReference=\"{}\"/>", member); });
+      for_each_member(TxClock, [&](bool of_the_line, size_t member) {
+        if (!of_the_line) line("    <Output valueReference=\"{}\"/>", member);
+      });
+      for_each_member(BusNotifications, [&](bool of_the_line, size_t member) {
+        if (of_the_line) line("    <Output valueReference=\"{}\"/>", member);
+      });
       for_each_output([&](size_t n) { line("    <InitialUnknown valueReference=\"{}\"/>", n + 1); });
-      for (size_t n = 0; n < terminals_.size(); ++n) line("    <InitialUnknown valueReference=\"{}\"/>", first_member(n) + 3);
+      for_each_member(TxClock, [&](bool of_the_line, size_t member) {
+        if (!of_the_line) line("    <InitialUnknown valueReference=\"{}\"/>", member);
+      });
     }
     line("  </ModelStructure>");
+  }
+  template <typename Do>
+  void for_each_member(fmi::TerminalMember member, Do action) {
+    for (size_t n = 0; n < terminals_.size(); ++n)
+      action(terminals_[n]->is_of_the_line(), first_member(n) + static_cast<size_t>(member));
   }
   // FMI 2.0 counts the variables from 1, the time among them.
   void write_unknowns(std::string_view element, std::string_view attributes) {
@@ -175,14 +194,14 @@ class Writer {
 
   const Dialect& dialect_;
   const Variables& variables_;
-  const std::vector<fmi::BusTerminal>& terminals_;
+  const fmi::Terminals& terminals_;
   std::string out_;
 };
 
 }  // namespace
 
 std::string description_of(const Dialect& dialect, const DescriptionHead& head, const fmi::Variables& variables,
-                           const std::vector<fmi::BusTerminal>& terminals) {
+                           const fmi::Terminals& terminals) {
   return Writer(dialect, variables, terminals).write(head);
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "runtime/fmi/bus_terminal.hpp"
 #include "runtime/fmi/variables.hpp"
@@ -14,10 +13,11 @@ struct DescriptionHead {
   std::string model;       // its name
   std::string identifier;  // of the library
   std::string token;
+  bool is_line = false;    // alone, without stations
 };
 
 // Terminals are of FMI 3.0.
 std::string description_of(const Dialect& dialect, const DescriptionHead& head, const fmi::Variables& variables,
-                           const std::vector<fmi::BusTerminal>& terminals);
+                           const fmi::Terminals& terminals);
 
 }  // namespace ipos::tools

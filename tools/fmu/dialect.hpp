@@ -23,13 +23,15 @@ struct Dialect {
   std::string_view get_state;  // attributes of what an instance can do
   std::string_view serialize;
   std::string_view more;             // attributes of co-simulation that only this version has
+  std::string_view more_of_a_line;   // the same of a line alone, which has no ticks and no faults to return for
   std::string_view types[4];         // elements of variables by fmi::Type
   bool nested;                       // the type is an element within the variable
 };
 inline constexpr Dialect kDialects[] = {
-    {2, "2.0", "guid", "canGetAndSetFMUstate", "canSerializeFMUstate", "", {"Real", "Integer", "Boolean", "Enumeration"}, true},
+    {2, "2.0", "guid", "canGetAndSetFMUstate", "canSerializeFMUstate", "", "", {"Real", "Integer", "Boolean", "Enumeration"}, true},
     {3, "3.0", "instantiationToken", "canGetAndSetFMUState", "canSerializeFMUState",
      " fixedInternalStepSize=\"0.001\" mightReturnEarlyFromDoStep=\"true\" hasEventMode=\"true\"",
+     " hasEventMode=\"true\"",
      {"Float64", "Int32", "Boolean", "Enumeration"}, false}};
 
 }  // namespace ipos::tools

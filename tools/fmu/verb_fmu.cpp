@@ -30,7 +30,9 @@ namespace fs = std::filesystem;
 struct FmuFlags {
   std::string file;
   std::string output;
-  std::string version = "2";
+  std::string version;
+  std::string bus;
+  uint32_t terminals = 2;
   fmi::Choice choice;
   bool sources = false;
   CompileFlags compile;
@@ -54,6 +56,7 @@ fmi::Package package_of(const PlantInput& input, const FmuFlags& flags) {
   fmi::Package package;
   package.plant = text_of(input);
   package.choice = flags.choice;
+  if (package.choice.line) return package;
   for (size_t n = 0; n < input.file.stations.size(); ++n) {
     fmi::Package::Station& station = package.stations.emplace_back();
     if (input.programs[n]) station.program = without_folders(*input.programs[n]);
@@ -116,29 +119,60 @@ void add_libraries(const Dialect& dialect, const std::string& identifier, Zip& z
 
 std::string texts_of(size_t count, std::string_view one) { return fmt::format("{} {}{}", count, one, count == 1 ? "" : "s"); }
 
-int write_fmu(const FmuFlags& flags) {
+// The CAN line of that name. Faults of single stations stay with these.
+fmi::LineChoice line_of(const PlantInput& input, const FmuFlags& flags) {
+  const auto& buses = input.file.buses;
+  const auto bus = std::find_if(buses.begin(), buses.end(), [&](const runtime::BusConfig& each) { return each.name == flags.bus; });
+  if (bus == buses.end() || bus->kind != runtime::BusKind::Can) {
+    std::vector<std::string_view> lines;
+    for (const runtime::BusConfig& each : buses)
+      if (each.kind == runtime::BusKind::Can) lines.push_back(each.name);
+    throw Failure(kUsage, fmt::format("there is no CAN line '{}'; the plant has {}", flags.bus,
+                                      lines.empty() ? "none" : fmt::format("{}", fmt::join(lines, ", "))));
+  }
+  for (const runtime::FaultConfig& fault : input.file.faults)
+    if (fault.bus == flags.bus && !fault.station.empty())
+      fmt::print(stderr, "ipos: warning: {}:{}:{}: the fault is left out: it needs the station '{}'\n", compiler::printable(input.path),
+                 fault.place.line, fault.place.column, fault.station);
+  return {flags.bus, flags.terminals};
+}
+
+// The plant that the library will make of it.
+std::unique_ptr<runtime::Plant> plant_of(const PlantInput& input, const fmi::Package& package) {
+  if (!package.choice.line) return make_plant(input, runtime::FileUse::Look);
+  auto plant = fmi::contents_of(package).value().build();
+  return *std::move(plant);
+}
+
+int write_fmu(FmuFlags flags) {
+  const bool is_line = !flags.bus.empty();
+  if (is_line && (flags.version == "2" || flags.sources || !flags.choice.stations.empty() || !flags.choice.signals.empty()))
+    throw Failure(kUsage, "--bus is the line alone, in FMI 3.0: it takes no --fmi 2, --station, --signals and --sources");
+  if (flags.version.empty()) flags.version = is_line ? "3" : "2";
   const Dialect& dialect = *std::find_if(std::begin(kDialects), std::end(kDialects),
                                          [&](const Dialect& each) { return fmt::format("{}", each.number) == flags.version; });
   const PlantInput input = read_plant_input(flags.file, flags.compile);
-  if (!input.file.machines.empty())
+  if (is_line) flags.choice.line = line_of(input, flags);
+  if (!is_line && !input.file.machines.empty())
     throw Failure(kBadInput, fmt::format("{}:{}:{}: a plant with foreign machines cannot become an FMU itself", input.path,
                                          input.file.machines.front().place.line, input.file.machines.front().place.column));
   const bool has_terminals = dialect.number != 2;
-  warn_of_ports(input, has_terminals);
-  const auto terminals = has_terminals ? fmi::terminals_of(input.file) : std::vector<fmi::BusTerminal>();
+  if (!is_line) warn_of_ports(input, has_terminals);
+  const auto terminals = has_terminals ? fmi::terminals_of(input.file, flags.choice) : fmi::Terminals();
   fmi::Package package = package_of(input, flags);
   const auto files = fmi::files_of(package, IPOS_VERSION);
-  const auto plant = make_plant(input, runtime::FileUse::Look);
+  const auto plant = plant_of(input, package);
   auto variables = fmi::variables_of(*plant, flags.choice);
   if (!variables) throw Failure(kUsage, variables.error());
 
-  const std::string model = fs::path(flags.file).stem().string();
+  const std::string stem = fs::path(flags.file).stem().string();
+  const std::string model = is_line ? stem + "." + flags.bus : stem;
   const std::string identifier = identifier_of(model);
   Zip zip;
-  zip.add("modelDescription.xml", description_of(dialect, {model, identifier, package.token}, *variables, terminals));
+  zip.add("modelDescription.xml", description_of(dialect, {model, identifier, package.token, is_line}, *variables, terminals));
   if (!terminals.empty()) {
     zip.add("terminalsAndIcons/terminalsAndIcons.xml", terminals_xml(terminals));
-    zip.add("extra/org.fmi-standard.fmi-ls-bus/fmi-ls-manifest.xml", manifest_xml());
+    zip.add("extra/org.fmi-standard.fmi-ls-bus/fmi-ls-manifest.xml", manifest_xml(is_line));
   }
   add_libraries(dialect, identifier, zip);
   zip.add("documentation/licenses/license.txt", notices_text());
@@ -164,6 +198,8 @@ void add_fmu(cli::Verb& app) {
   verb.option("PLANT", flags->file, "plant file, or program").required();
   verb.option("-o", flags->output, "FMU to write, *.fmu").required();
   verb.option("--fmi", flags->version, "version of FMI; default: 2").one_of({"2", "3"});
+  verb.option("--bus", flags->bus, "this CAN line alone, as a bus simulation for other nodes (FMI 3.0)");
+  verb.option("--terminals", flags->terminals, "how many nodes the line has with --bus, 1..64; default: 2").between(1, fmi::kMostTerminals);
   verb.option("--station", flags->choice.stations, "only this station (may be repeated)").one_each().offers(offered_stations);
   verb.option("--signals", flags->choice.signals, "name or pattern of signals that are outputs, too (may be repeated)")
       .one_each()

@@ -192,6 +192,14 @@ inline bool CanLine::pass_plain(uint64_t bit) {
   }
 }
 
+std::optional<Time> CanLine::plain_end() {
+  const uint64_t bit = segments_[0].start_bit;
+  if (segments_.size() != 1 || segments_[0].busy() || bit == kNoBit) return std::nullopt;
+  const NodeId id = plain_sender(bit);
+  if (id == kNoNode) return std::nullopt;
+  return static_cast<Time>(bit + known_.bits(nodes_[id].queue.front().frame) - kIntermissionBits) * bit_time_;
+}
+
 void CanLine::begin_plain(NodeId id, uint64_t bit) {
   Pending& pending = nodes_[id].queue.front();
   pending.on_wire = true;

@@ -69,6 +69,11 @@ class CanLine final : private EventTarget {
   // Leaves bus-off once the node has seen 128 times 11 recessive bits in a row (ISO 11898-1).
   void recover(NodeId node);
 
+  // A controller outside of the line tells its error state; what the line has counted of it is forgotten.
+  void tell_error_state(NodeId node, ErrorState state);
+  // Another rate for all who have that of the line. False: frames have been sent already, or wait.
+  bool set_line_baud(uint32_t baud);
+
   // Plants a fault; its node must be attached. A cut waits for the end of the frames under way, its repair
   // also (ours).
   void plant(const LineFault& fault);
@@ -87,6 +92,8 @@ class CanLine final : private EventTarget {
   }
   bool is_reachable(NodeId from, NodeId to) const;  // both active, and no cut between them
   LineLoad load(Time now) const;
+  // When the frame ends that begins next; nothing where more than its length decides that, or nobody wants to send.
+  std::optional<Time> plain_end();
 
  private:
   struct Pending {

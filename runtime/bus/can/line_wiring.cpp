@@ -27,6 +27,18 @@ void CanLine::set_connected(NodeId node, bool connected) {
   report_absence(node, nullptr);
 }
 
+bool CanLine::set_line_baud(uint32_t baud) {
+  if (frames_ != 0 || !contenders_.empty() || segments_.size() != 1 || segments_[0].busy() || segments_[0].free_bit != 0)
+    return false;
+  for (Node& node : nodes_)
+    if (node.baud == baud_) node.baud = baud;
+  baud_ = baud;
+  bit_time_ = (kSecond + baud / 2) / baud;
+  meter_ = LoadMeter(baud);
+  for (Node& node : nodes_) wire(node);
+  return true;
+}
+
 // --- planted faults
 
 void CanLine::plant(const LineFault& fault) {
@@ -138,6 +150,18 @@ void CanLine::restart(NodeId node) {
   queue_.cancel(std::exchange(nodes_[node].recovery, kNoEvent));
   nodes_[node].recovery_runs = 0;
   nodes_[node].counters = {};
+}
+
+// The counters stand in the middle of what the state allows, so that one frame does not change it.
+void CanLine::tell_error_state(NodeId id, ErrorState state) {
+  constexpr uint32_t kTransmit[] = {0, 192, 256};
+  Node& node = nodes_[id];
+  const bool was_off = node.counters.state() == ErrorState::BusOff, is_off = state == ErrorState::BusOff;
+  node.counters = {kTransmit[static_cast<size_t>(state)], 0};
+  erring_.put(id, false);
+  if (was_off == is_off) return;
+  sound_ = false;
+  if (is_off) drop_queue(id);
 }
 
 void CanLine::recover(NodeId node) {
