@@ -29,6 +29,7 @@ PARTS = {
     "linux-x86_64": ["linux", "page", "plot"], "windows-x86_64.exe": ["windows", "page", "plot"],
     "windows-x86_64-setup.exe": ["windows", "page", "plot", "installer"], ".html": ["web", "page", "plot"],
     "site.tar.gz": ["web", "page", "plot", "site"], ".deb": ["deb", "page", "plot", "extension"],
+    "fmu-libraries.zip": ["library", "windows-library"],
     "win_amd64.whl": ["windows-library"], "windows-x86_64.zip": ["windows-library"], ".whl": ["library"],
     ".vsix": ["extension"], ".tgz": ["web"], "source.tar.gz": ["page", "plot"], "Containerfile": [], "NOTICES.txt": [],
     ".zip": [], ".pack": [],  # firmware: the project's own sources alone
@@ -99,6 +100,19 @@ def make_wheel(library: Path, out: Path) -> None:
         pack_again(wheel, out / wheel.name)
 
 
+def make_fmu_libraries(out: Path) -> None:
+    """What `ipos fmu` puts into an FMU, to be laid beside a program that is one file."""
+    name = out / f"ipos-{version()}-fmu-libraries.zip"
+    with tempfile.TemporaryDirectory() as folder:
+        notices = Path(folder) / "NOTICES.txt"
+        write_notices(PARTS["fmu-libraries.zip"], notices)
+        run("x86_64-w64-mingw32-strip", "-o", Path(folder) / "ipos_fmu.dll", BUILD / "windows/lib/ipos_fmu.dll")
+        with zipfile.ZipFile(Path(folder) / "all.zip", "w") as archive:
+            for file in (notices, NATIVE / "lib/libipos_fmu.so", Path(folder) / "ipos_fmu.dll"):
+                archive.write(file, file.name)
+        pack_again(Path(folder) / "all.zip", name)
+
+
 def make_windows(out: Path) -> None:
     run("cmake/asmjit_source.sh", BUILD / "windows/asmjit")
     run("cmake", "--preset", "windows", "-DIPOS_JIT=ON")
@@ -152,6 +166,7 @@ def make(out: Path) -> None:
     make_sources(out)
     make_native(out)
     make_windows(out)
+    make_fmu_libraries(out)
     make_web(out, seconds)
     files = {file: next(parts for end, parts in PARTS.items() if file.name.endswith(end)) for file in sorted(out.iterdir())}
     bill = sbom.bill(version(), asked("git", "rev-parse", "HEAD"), seconds, files)

@@ -8,6 +8,7 @@
 
 #include "runtime/fmi_import/fmu_model.hpp"
 #include "tests/fmi_import/folder.hpp"
+#include "tests/harness/contains.hpp"
 
 namespace ipos::tests {
 namespace {
@@ -64,6 +65,20 @@ TEST(FmuBothWays, ImportAndExportGiveTheSameCurves) {
       furthest = std::max(furthest, spring.out * kRpm);
     }
     EXPECT_GT(furthest, 1000);
+  }
+}
+
+// Nothing of the foreign FMU runs for it, and nobody is asked whether it may.
+TEST(FmuBothWays, APlantWithAMachineIsRefusedAtItsLine) {
+  const FmuFolder folder;
+  folder.write_trouble(0);
+  for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--fmi", "3"}}) {
+    std::vector<std::string> words{"fmu", "p.toml", "-o", "p.fmu"};
+    words.insert(words.end(), more.begin(), more.end());
+    const CommandResult made = folder.run(words);
+    EXPECT_EQ(made.exit_code, 65);
+    EXPECT_TRUE(contains(made.err, "p.toml:4:1: a plant with foreign machines cannot become an FMU itself")) << made.err;
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "p.fmu"));
   }
 }
 

@@ -119,6 +119,15 @@ void add_libraries(const Dialect& dialect, const std::string& identifier, Zip& z
 
 std::string texts_of(size_t count, std::string_view one) { return fmt::format("{} {}{}", count, one, count == 1 ? "" : "s"); }
 
+// Before somebody is asked whether a foreign FMU may run.
+void refuse_machines(const std::string& path) {
+  if (!is_plant(path)) return;
+  const runtime::PlantFile file = runtime::read_plant_file(read_file(path)).plant;
+  if (file.machines.empty()) return;
+  const runtime::FilePlace place = file.machines.front().place;
+  throw Failure(kBadInput, fmt::format("{}:{}:{}: a plant with foreign machines cannot become an FMU itself", path, place.line, place.column));
+}
+
 // The CAN line of that name. Faults of single stations stay with these.
 fmi::LineChoice line_of(const PlantInput& input, const FmuFlags& flags) {
   const auto& buses = input.file.buses;
@@ -151,11 +160,9 @@ int write_fmu(FmuFlags flags) {
   if (flags.version.empty()) flags.version = is_line ? "3" : "2";
   const Dialect& dialect = *std::find_if(std::begin(kDialects), std::end(kDialects),
                                          [&](const Dialect& each) { return fmt::format("{}", each.number) == flags.version; });
+  refuse_machines(flags.file);
   const PlantInput input = read_plant_input(flags.file, flags.compile);
   if (is_line) flags.choice.line = line_of(input, flags);
-  if (!is_line && !input.file.machines.empty())
-    throw Failure(kBadInput, fmt::format("{}:{}:{}: a plant with foreign machines cannot become an FMU itself", input.path,
-                                         input.file.machines.front().place.line, input.file.machines.front().place.column));
   const bool has_terminals = dialect.number != 2;
   if (!is_line) warn_of_ports(input, has_terminals);
   const auto terminals = has_terminals ? fmi::terminals_of(input.file, flags.choice) : fmi::Terminals();
