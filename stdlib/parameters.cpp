@@ -55,6 +55,17 @@ std::optional<Integer> number(std::string_view text) {
   return value;
 }
 
+// "813", not "81" or "17.1".
+std::optional<size_t> three_digits(std::string_view text) {
+  if (text.size() != 3) return std::nullopt;
+  size_t value = 0;
+  for (const char digit : text) {
+    if (digit < '0' || digit > '9') return std::nullopt;
+    value = 10 * value + static_cast<size_t>(digit - '0');
+  }
+  return value;
+}
+
 bool read_access(std::string_view text, Parameter& p) {
   while (!text.empty()) {
     const std::string_view word = cut(text, '/');
@@ -256,6 +267,9 @@ ParameterTable::ParameterTable(std::span<const EmbeddedFile* const> lists, bool 
     if (!row.number.empty()) by_number_.push_back(&row);
   std::stable_sort(by_number_.begin(), by_number_.end(),
                    [](const Parameter* a, const Parameter* b) { return a->number < b->number; });
+  by_digits_.resize(1000);
+  for (const Parameter& row : rows_)
+    if (const auto digits = three_digits(row.number); digits && by_digits_[*digits] == nullptr) by_digits_[*digits] = &row;
 }
 
 const Parameter* ParameterTable::find(uint16_t index) const { return find_index(by_index_, index); }
@@ -263,8 +277,9 @@ const Parameter* ParameterTable::find(uint16_t index) const { return find_index(
 const Parameter* ParameterTable::find(std::string_view text) const {
   if (text.starts_with('P') || text.starts_with('p'))
     text.remove_prefix(1);
-  else if (const auto index = number<uint16_t>(text); index && *index > 999)
+  else if (const auto index = text.size() > 3 ? number<uint16_t>(text) : std::nullopt; index && *index > 999)
     return find(*index);
+  if (const auto digits = three_digits(text)) return by_digits_[*digits];
   const auto at =
       std::lower_bound(by_number_.begin(), by_number_.end(), text,
                        [](const Parameter* p, std::string_view wanted) { return p->number < wanted; });

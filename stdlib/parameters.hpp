@@ -92,6 +92,7 @@ class ParameterTable {
   std::vector<Parameter> rows_;
   std::vector<const Parameter*> by_index_;
   std::vector<const Parameter*> by_number_;
+  std::vector<const Parameter*> by_digits_;  // of the numbers 000 to 999, which most have
   std::vector<std::string> problems_;
 };
 

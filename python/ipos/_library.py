@@ -173,6 +173,7 @@ _FUNCTIONS = {
     "journal_at": [c_void_p, c_size_t, POINTER(Entry)],
     "save": [c_void_p, c_void_p, POINTER(c_size_t)],
     "restore": [c_void_p, c_char_p, c_size_t],
+    "restart": [c_void_p],
     "replay": [c_void_p, CONDITION, c_void_p],
     "trace_hash": [c_void_p, POINTER(c_uint64)],
 }

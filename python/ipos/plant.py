@@ -364,6 +364,16 @@ class Plant(lib.Named):
         self._call("save", room, byref(size))
         return room.raw[: size.value]
 
+    def restart(self) -> None:
+        """At time 0 again, as it was opened, without reading or compiling anything; what was done to it is forgotten.
+
+        for load in range(100):
+            plant.restart()
+            plant["saw"]["lLoad"] = load
+            plant.run("500ms")
+        """
+        self._call("restart")
+
     def restore(self, snapshot: bytes) -> None:
         """Back to a snapshot, or forth. Takes the time the run took from its beginning."""
         if not isinstance(snapshot, (bytes, bytearray, memoryview)):

@@ -168,6 +168,11 @@ int32_t ParameterStore::stored(uint16_t index) const {
   return slot ? slot->working : 0;
 }
 
+std::optional<size_t> ParameterStore::slot_of(uint16_t index) const {
+  const Slot* slot = find(index);
+  return slot ? std::optional(static_cast<size_t>(slot - slots_.data())) : std::nullopt;
+}
+
 bool ParameterStore::has_card(stdlib::OptionCard card) const {
   switch (card) {
     case stdlib::OptionCard::Drs: return options_.drs;

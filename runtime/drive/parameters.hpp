@@ -117,6 +117,9 @@ class ParameterStore {
 
   // The same without what the drive computes: what was set.
   int32_t stored(uint16_t index) const;
+  // The same by its place, for who asks often: that of an index is the same in all units with one list.
+  std::optional<size_t> slot_of(uint16_t index) const;
+  int32_t stored_in(size_t slot) const { return slots_[slot].working; }
   // Grows with every change of a setting; display values do not count.
   uint32_t changes() const { return changes_; }
 

@@ -74,7 +74,7 @@ Settings read_m31(const ParameterStore& parameters) {
 
 }  // namespace
 
-// Which index each setting has is looked up once a list of parameters: a plant has many drives, and a campaign many plants.
+// Where each setting stands is looked up once a list of parameters: a plant has many drives, and a campaign many plants.
 SettingsReader::SettingsReader(const ParameterStore& parameters)
     : traits_(parameters.unit().traits) {
   if (traits_.has(Trait::OwnParameterNumbers)) return;
@@ -87,16 +87,16 @@ SettingsReader::SettingsReader(const ParameterStore& parameters)
   const std::lock_guard lock(mutex);
   const auto [entry, is_new] = all.try_emplace(&parameters.table());
   Known& known = entry->second;
-  const auto index_of = [&](std::string_view number) -> uint16_t {
+  const auto slot_of = [&](std::string_view number) -> std::optional<size_t> {
     const stdlib::Parameter* row = parameters.table().find(number);
-    return row == nullptr ? 0 : row->index;
+    return row == nullptr || row->index == 0 ? std::nullopt : parameters.slot_of(row->index);
   };
   if (is_new) {
 #define SETTING(name, number, absent) \
-  if (const uint16_t index = index_of(number)) known.cells.push_back({&Settings::name, index});
+  if (const auto slot = slot_of(number)) known.cells.push_back({&Settings::name, *slot});
 #define SET_SETTING(name, first, second, absent) \
-  if (const uint16_t index = index_of(first))    \
-    known.set_cells.push_back({&ParameterSet::name, {index, index_of(second)}});
+  if (const auto slot = slot_of(first))          \
+    known.set_cells.push_back({&ParameterSet::name, {*slot, slot_of(second).value_or(*slot)}});
 #include "runtime/drive/settings.def"
   }
   cells_ = known.cells;
@@ -106,12 +106,9 @@ SettingsReader::SettingsReader(const ParameterStore& parameters)
 Settings SettingsReader::read(const ParameterStore& parameters) const {
   if (traits_.has(Trait::OwnParameterNumbers)) return read_m31(parameters);
   Settings settings;
-  for (const Cell& cell : cells_) settings.*cell.member = parameters.stored(cell.index);
+  for (const Cell& cell : cells_) settings.*cell.member = parameters.stored_in(cell.slot);
   for (const SetCell& cell : set_cells_)
-    for (size_t n = 0; n < 2; ++n) {
-      const uint16_t index = cell.index[n] != 0 ? cell.index[n] : cell.index[0];
-      settings.sets[n].*cell.member = parameters.stored(index);
-    }
+    for (size_t n = 0; n < 2; ++n) settings.sets[n].*cell.member = parameters.stored_in(cell.slots[n]);
   for (ParameterSet& set : settings.sets) {
     fill_set(set);
     fill(set.brake_application, settings.braking_time);

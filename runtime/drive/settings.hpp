@@ -61,11 +61,11 @@ class SettingsReader {
  private:
   struct Cell {
     int32_t Settings::*member;
-    uint16_t index;
+    size_t slot;  // of the parameter
   };
   struct SetCell {
     int32_t ParameterSet::*member;
-    std::array<uint16_t, 2> index;
+    std::array<size_t, 2> slots;
   };
   stdlib::Traits traits_;
   std::vector<Cell> cells_;

@@ -294,6 +294,13 @@ ipos_plant_status ipos_plant_restore(ipos_plant* plant, const void* bytes, size_
   });
 }
 
+ipos_plant_status ipos_plant_restart(ipos_plant* plant) {
+  return enter(plant, Allowed::NotInCallbacks, [=](Session& session) {
+    if (auto refused = session.restart()) return plant->fail(IPOS_PLANT_REFUSED, std::move(*refused));
+    return ipos_plant_status{IPOS_PLANT_OK};
+  });
+}
+
 ipos_plant_status ipos_plant_replay(ipos_plant* plant, ipos_plant_condition look, void* user) {
   return enter(plant, Allowed::NotInCallbacks, [=](Session& session) {
     if (look == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};

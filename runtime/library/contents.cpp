@@ -218,9 +218,15 @@ void Contents::identify(std::string_view text, const Source& source) {
   identity_ = print.value();
 }
 
+bool Contents::writes_memory() const {
+  return std::any_of(file_.stations.begin(), file_.stations.end(), [](const runtime::StationConfig& station) {
+    return !station.nvram.empty() && station.nvram_use == runtime::FileUse::Write;
+  });
+}
+
 tl::expected<std::unique_ptr<runtime::Plant>, Mistakes> Contents::build() const {
   std::vector<runtime::PlantError> errors;
-  auto plant = std::make_unique<runtime::Plant>(file_, programs_, rates_, errors);
+  auto plant = std::make_unique<runtime::Plant>(file_, programs_, rates_, errors, execution_);
   if (!errors.empty()) return tl::unexpected(mistakes_of(name_, errors));
   return plant;
 }

@@ -12,6 +12,7 @@
 #include <tl/expected.hpp>
 
 #include "runtime/plant/plant.hpp"
+#include "runtime/unit/unit_program.hpp"
 
 namespace ipos::library {
 
@@ -50,6 +51,8 @@ class Contents {
   // At time 0, switched on. Mistakes are those that only the units find.
   tl::expected<std::unique_ptr<runtime::Plant>, Mistakes> build() const;
 
+  // Its units keep in files what they store.
+  bool writes_memory() const;
   // The same number for the same plant, programs and options.
   uint64_t identity() const { return identity_; }
 
@@ -66,6 +69,7 @@ class Contents {
   runtime::PlantFile file_;
   std::vector<std::optional<vm::Image>> programs_;
   std::optional<vm::Rates> rates_;
+  runtime::Execution execution_{.shelf = std::make_shared<runtime::ProgramShelf>()};
   uint64_t identity_ = 0;
 };
 

@@ -112,6 +112,18 @@ Session::Restored Session::restore(std::span<const uint8_t> bytes, std::string& 
   return Restored::Done;
 }
 
+Refusal Session::restart() {
+  if (contents_.writes_memory()) return "it writes the memories of its units: a new beginning would find in them what they hold now";
+  auto plant = contents_.build();
+  if (!plant) return plant.error().front().text;
+  auto instance = std::make_unique<Instance>(*std::move(plant));
+  enter(instance);
+  record_.clear();
+  tags_ = 0;
+  shadow_.reset();
+  return std::nullopt;
+}
+
 uint64_t Session::trace_hash() {
   if (!shadow_) shadow_ = std::make_unique<Shadow>(*contents_.build());
   const auto run = [this](Time until) {

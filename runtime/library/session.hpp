@@ -54,6 +54,9 @@ class Session {
   // `look` is asked at every full millisecond on the way; then the session is already the one restored.
   Restored restore(std::span<const uint8_t> bytes, std::string& why, const std::function<void()>& look = {});
 
+  // At time 0 again, with an empty record: the plant is built of what was read. Nothing, or why it cannot be.
+  Refusal restart();
+
   uint64_t trace_hash();
 
  private:

@@ -18,7 +18,8 @@ namespace ipos::runtime {
 namespace {
 
 // What the verifier says about a program that its station's unit cannot run.
-std::vector<PlantError> verify_program(const StationConfig& station, const vm::Image& image) {
+std::vector<PlantError> verify_program(const StationConfig& station, const vm::Image& image, const Execution& execution) {
+  if (execution.shelf && execution.shelf->find(image.code, limits_of(*station.unit), execution)) return {};
   std::array<vm::Violation, 4> violations{};
   const vm::Verification result = vm::verify(image.code, limits_of(*station.unit), violations);
   std::vector<PlantError> errors;
@@ -76,7 +77,7 @@ void Plant::add_station(size_t number, std::optional<vm::Image> program, std::op
   const StationConfig& config = file_.stations[number];
   const StationLines lines = lines_of(config);
   if (program) {
-    const std::vector<PlantError> refused = verify_program(config, *program);
+    const std::vector<PlantError> refused = verify_program(config, *program, execution);
     errors.insert(errors.end(), refused.begin(), refused.end());
   }
   stations_.push_back(std::make_unique<Station>(queue_, next_source_++, config, std::move(program), lines,

@@ -56,10 +56,19 @@ void read_plant_sections(PlantReader& reader, const toml::table& root,
   read_surroundings(reader, root);
 }
 
+bool refuse_campaign(PlantReader& reader, const toml::table& root) {
+  for (const std::string_view key : kCampaignKeys)
+    if (const toml::node* node = root.get(key)) {
+      reader.error(place_of(*node), "this is a campaign: `ipos campaign run FILE --out DIR` runs its cases, `ipos campaign plan FILE` counts them");
+      return true;
+    }
+  return false;
+}
+
 PlantFileResult read_plant_file(std::string_view text) {
   PlantReader reader;
   const auto root = parse_toml(reader, text);
-  if (!root) return std::move(reader.result);
+  if (!root || refuse_campaign(reader, *root)) return std::move(reader.result);
   for (const std::string_view key : kTestKeys)
     if (const toml::node* node = key == "expect" ? nullptr : root->get(key)) {
       const std::string named = (*root)["plant"].value_or(std::string());

@@ -108,6 +108,8 @@ class PlantReader {
 
 // The table of a TOML text; nothing with an error.
 std::optional<toml::table> parse_toml(PlantReader& reader, std::string_view text);
+// A campaign is no plant and no test: that is told, with the verb that takes it. True: it is one.
+bool refuse_campaign(PlantReader& reader, const toml::table& root);
 // All sections of a plant but [[expect]]. `also` are keys of the root beside them, which the caller reads.
 void read_plant_sections(PlantReader& reader, const toml::table& root,
                          const std::vector<std::string_view>& also);

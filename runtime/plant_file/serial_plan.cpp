@@ -168,11 +168,13 @@ class Finder {
            "interface",
            false});
     const int32_t source = parameter_(n, "100");
-    if ((stdlib::follows_sbus_master(source) || stdlib::follows_rs485_master(source)) && parameter_(n, "750") != 0)
+    const int32_t setpoint = parameter_(n, "750");
+    const bool is_part = sends_setpoints(setpoint) || stdlib::follows_rs485_master(source);
+    if ((stdlib::follows_sbus_master(source) || stdlib::follows_rs485_master(source)) && setpoint != 0)
       findings_.push_back({name(n), "a slave of a master/slave connection (P100) must have P750 = 0"});
-    if ((sends(n) || follows(n)) && serial.x13.bus.empty())
+    if (is_part && serial.x13.bus.empty())
       findings_.push_back({name(n), "master/slave operation over RS-485 needs X13 (key rs485)"});
-    if ((sends(n) || follows(n)) && parameter_(n, "811") <= kNoGroupAddress)
+    if (is_part && parameter_(n, "811") <= kNoGroupAddress)
       findings_.push_back({name(n), "master/slave operation needs a group address P811 above 100"});
   }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_set>
@@ -41,6 +42,7 @@ void add_outputs(Collector& out);
 void add_analog(Collector& out);
 void add_states(Collector& out);
 void add_states_beside_drive(Collector& out);  // without those that a value of the drive has the name of
+std::optional<Signal> state_signal(Owner owner, std::string_view name);  // one of them
 void add_words(Collector& out);
 void add_drive_values(Collector& out);
 void add_tasks(Collector& out);

@@ -153,6 +153,7 @@ std::optional<Signal> find_in_group(Owner owner, Group group, std::string_view n
     Collector out(owner);
     return out.add_parameter(*row, Group::Parameter, name);
   }
+  if (group == Group::State) return state_signal(owner, name);
   for (Signal& signal : signals_of(owner, group))
     if (signal.own_name() == name) return std::move(signal);
   return std::nullopt;

@@ -48,6 +48,14 @@ void add_states(Collector& out) {
   for (const StationState& state : kStates) add(out, state);
 }
 
+std::optional<Signal> state_signal(Owner owner, std::string_view name) {
+  const int row = find_state(name);
+  if (row < 0) return std::nullopt;
+  Collector out(owner);
+  add(out, kStates[row]);
+  return std::move(out.found.front());
+}
+
 void add_states_beside_drive(Collector& out) {
   for (const StationState& state : kStates)
     if (!is_drive_value(state.name)) add(out, state);

@@ -10,6 +10,8 @@
 
 namespace ipos::runtime {
 
+class ProgramShelf;
+
 struct Execution {
   // Machine code of a program, which lives as long as somebody holds it; null when there is none for it.
   // vm/jit can make it, which the runtime does not know.
@@ -18,6 +20,7 @@ struct Execution {
   bool fast = true;             // the fast engine; else the reference interpreter alone
   Compiler compiler = nullptr;  // for the fast engine; null: no machine code
   Pace pace = Pace::Lazy;
+  std::shared_ptr<ProgramShelf> shelf{};  // of what is made of programs; null: each unit makes its own
 };
 
 }  // namespace ipos::runtime

@@ -5,13 +5,9 @@
 #include <algorithm>
 #include <cassert>
 
-#include "stdlib/system_variables.hpp"
-#include "vm/verify/writes.hpp"
 
 namespace ipos::runtime {
 namespace {
-
-constexpr size_t kControlWord = stdlib::system_variable("ControlWord");
 
 // What did not help is tried again after 2, 4, 8.. ticks, at most these: to compare a tick; to run ahead of a
 // command that stops; to look for an idle loop, where the unit moves and where its program works; to look
@@ -27,8 +23,7 @@ void ManyTicks::know_program() {
   program_ = unit_.programs();
   reach_ = {};
   reach_backoff_ = {};
-  may_order_ =
-      unit_.machine() != nullptr && vm::may_write(unit_.machine()->program(), kControlWord, kControlWord);
+  may_order_ = unit_.machine() != nullptr && unit_.program()->may_order();
 }
 
 bool ManyTicks::tick(Time now) {

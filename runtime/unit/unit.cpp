@@ -101,7 +101,7 @@ void Unit::restart_after_reset(Time now) {
   const uint32_t resets = drive().resets();
   if (resets != resets_seen_ && machine_->fault().number != 0) {
     std::optional<std::string> refused;
-    if (drive_.memory().program().code() == code_)
+    if (std::ranges::equal(drive_.memory().program().code(), program_->code()))
       start_machine();
     else
       refused = load_program();
@@ -149,11 +149,11 @@ void Unit::advance(Ticks ticks) {
 }
 
 std::string Unit::source_place(uint32_t address) const {
-  return image_ && code_ == image_->code ? runtime::source_place(*image_, address) : std::string();
+  return runs_image() ? runtime::source_place(*image_, address) : std::string();
 }
 
 uint32_t Unit::source_line(uint32_t address) const {
-  return image_ && code_ == image_->code ? runtime::source_line(*image_, address) : 0;
+  return runs_image() ? runtime::source_line(*image_, address) : 0;
 }
 
 }  // namespace ipos::runtime

@@ -3,6 +3,7 @@
 // matter of runtime/pace and of ManyTicks.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <optional>
@@ -21,8 +22,8 @@
 #include "runtime/unit/unit_interface.hpp"
 #include "runtime/unit/execution.hpp"
 #include "runtime/unit/unit_inputs.hpp"
+#include "runtime/unit/unit_program.hpp"
 #include "vm/exec/machine.hpp"
-#include "vm/fast/predecode.hpp"
 #include "vm/image/image.hpp"
 #include "vm/sched/scheduler.hpp"
 
@@ -95,6 +96,8 @@ class Unit final {
   // --- its parts ---
   const std::string& name() const { return config_.name; }
   const vm::Image* image() const { return image_ ? &*image_ : nullptr; }
+  // It was started at least once; null: never.
+  const UnitProgram* program() const { return program_.get(); }
   vm::Machine* machine() { return machine_ ? &*machine_ : nullptr; }
   const vm::Machine* machine() const { return machine_ ? &*machine_ : nullptr; }
   // The H variables: the unit has them with and without a program, so a master that knows indices only finds the
@@ -126,6 +129,7 @@ class Unit final {
   uint32_t source_line(uint32_t address) const;  // 12, or 0
 
  private:
+  bool runs_image() const { return image_ && program_ && std::ranges::equal(program_->code(), image_->code); }
   void take_inputs();
   const PositionControl& order_position(Time now);
   void raise_events();
@@ -134,7 +138,6 @@ class Unit final {
   void show_positioning(Time now);
   void begin_variables();
   void start_machine();
-  void choose_engine(const vm::VerifiedImage& program);
   ProgramServices services();
   void report_drive(Time now);
   void report_reasons(Time now);
@@ -163,10 +166,7 @@ class Unit final {
   std::array<VariableObjects*, 2> objects_{};  // of SBus 1 and 2; null for a bus it is not on
 
   std::optional<vm::Image> image_;
-  std::vector<uint32_t> code_;  // what the machine runs: the verified program memory
-  std::vector<vm::fast::Slot> slots_;
-  std::optional<vm::fast::Predecoded> predecoded_;  // in slots_
-  std::shared_ptr<const vm::fast::Native> native_;  // null: no machine code
+  std::shared_ptr<const UnitProgram> program_;  // what the machine runs: the verified program memory; null: nothing yet
   uint32_t programs_ = 0;
 
   // What works with the variables beside the program.

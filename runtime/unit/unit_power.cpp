@@ -35,7 +35,7 @@ void Unit::restart_program_memory(Time now) {
       image_ ? std::span<const uint32_t>(image_->code) : std::span<const uint32_t>();
   if (!drive_.memory().program().restart(program))
     note(now, Weight::Warning, "the memory holds a change of another program; it is dropped");
-  if (drive_.memory().program().code().empty()) return;
+  if (drive_.memory().program().empty()) return;
   if (const auto refused = load_program()) note(now, Weight::Warning, "program not started: " + *refused);
 }
 
@@ -57,24 +57,17 @@ ProgramServices Unit::services() {
 }
 
 std::optional<std::string> Unit::load_program() {
-  const vm::Limits limits = limits_of(config_.type);
-  std::vector<uint32_t> code = drive_.memory().program().code();
-  std::array<vm::Violation, 1> violations{};
-  const vm::Verification checked = vm::verify(code, limits, violations);
-  if (!checked.image) {
-    const vm::RuleInfo& rule = vm::info(violations[0].rule);
-    return fmt::format("word {}: {} [{}]", violations[0].address, rule.meaning, rule.code);
-  }
+  auto made = UnitProgram::of(drive_.memory().program().code(), limits_of(config_.type), execution_);
+  if (!made) return std::move(made).error();
   stop_tasks();
   in_tasks_ = false;  // of the program before, where a runner has stopped in it
   drive_.disconnect_program();
-  code_ = std::move(code);
+  machine_.reset();  // it stands on the program before
+  program_ = *std::move(made);
   begin_variables();
-  const bool of_image = image_ && code_ == image_->code;
-  commands_.emplace(services(), journal_, config_.name, of_image ? &*image_ : nullptr);
-  const vm::VerifiedImage program = *vm::verify(code_, limits, {}).image;
-  machine_.emplace(program, commands_->host());
-  choose_engine(program);
+  commands_.emplace(services(), journal_, config_.name, runs_image() ? &*image_ : nullptr);
+  machine_.emplace(program_->verified(), commands_->host());
+  machine_->use(program_->predecoded(), program_->native());
   if (positioning_commands_) positioning_commands_->cancel_all();
   drive_.connect_program(*machine_);
   start_machine();
@@ -106,14 +99,6 @@ void Unit::start_machine() {
   machine_->start();
   ++programs_;
   fault_reported_ = false;
-}
-
-void Unit::choose_engine(const vm::VerifiedImage& program) {
-  if (!execution_.fast) return;
-  slots_.assign(vm::fast::Predecoded::slots_needed(code_.size()), {});
-  predecoded_.emplace(program, slots_);
-  native_ = execution_.compiler == nullptr ? nullptr : execution_.compiler(program);
-  machine_->use(&*predecoded_, native_.get());
 }
 
 void Unit::stop_tasks() {

@@ -277,6 +277,25 @@ def test_power_program_and_faults(line):
     assert saw.program_fault == 0 and saw.ready
 
 
+def test_a_restart_is_a_new_plant(line):
+    def run(plant, count):
+        plant["saw"]["lCount"] = count
+        plant.plant_fault("sbus", "drop", rate=100, seed=count)
+        plant.run("300ms")
+        return plant.time_us, plant["saw"]["lCount"], plant["saw"].speed, plant.trace_hash
+
+    first = run(line, 500)
+    line["saw"].raise_fault(26)
+    line.run("50ms")
+    line.restart()
+    assert line.time_us == 0
+    second = run(line, 7)
+    line.restart()
+    assert run(line, 500) == first
+    with ipos.Plant(LINE) as other:
+        assert run(other, 7) == second
+
+
 def test_snapshots_go_back_and_elsewhere(line):
     saw = line["saw"]
     line.run("100ms")

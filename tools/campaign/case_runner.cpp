@@ -96,15 +96,15 @@ void CaseRunner::run_plant(const Levels& levels, Outcome& outcome) {
   Watch watch(*this, plant);
   plant.run_until(campaign_.duration, [&](Time now) { return watch.sample(now), true; });
   plant.store_memories();
-  const std::string file = campaign_.name_of(campaign_.plant);
+  const auto place = [&](FilePlace at) { return place_text(campaign_.name_of(campaign_.plant), at); };
   for (const runtime::ExpectationResult& result : plant.results()) {
     const runtime::Expectation& one = *result.expectation;
     if (!result.met)
-      outcome.failed.push_back(fmt::format("{}: {} of {} is {} at {}, expected {}", place_text(file, one.place), one.signal.name,
+      outcome.failed.push_back(fmt::format("{}: {} of {} is {} at {}, expected {}", place(one.place), one.signal.name,
                                            one.signal.station, result.actual, testing::time_text(one.at), one.equals));
   }
   for (const runtime::PlantError& failure : plant.machines().failures())
-    outcome.failed.push_back(fmt::format("{}: {}", place_text(file, failure.place), failure.text));
+    outcome.failed.push_back(fmt::format("{}: {}", place(failure.place), failure.text));
   for (const runtime::Station* station : plant.unforeseen_faults())
     outcome.failed.push_back(fmt::format("{}: has fault F{:02}", station->config().name, station->fault()));
   watch.take_measures(outcome.measures);

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "runtime/plant/trace_hash.hpp"
+#include "runtime/plant_file/expect_keys.hpp"
 #include "tools/campaign/read_vary.hpp"
 #include "tools/campaign/subject.hpp"
 #include "tools/cli/failure.hpp"
@@ -245,7 +246,9 @@ Campaign read_campaign(const std::string& path, const CompileFlags& compile) {
   PlantReader reader;
   auto root = runtime::parse_toml(reader, read_file(path));
   if (root) {
-    reader.known_keys(*root, "a campaign", {"plant", "tests", "for", "limit", "sample", "count", "seed", "vary", "fault", "measure"});
+    std::vector<std::string_view> known{"plant", "fault"};
+    known.insert(known.end(), runtime::kCampaignKeys.begin(), runtime::kCampaignKeys.end());
+    reader.known_keys(*root, "a campaign", known);
     read_what(reader, *root, campaign, compile);
     read_times(reader, *root, campaign);
     read_sampling(reader, *root, campaign.outline.sampling);

@@ -257,7 +257,7 @@ Json range_in(const Spot& spot, size_t begin, size_t end, Encoding encoding) {
 }  // namespace
 
 bool is_plant_document(const Workspace& workspace, const std::string& path) {
-  if (!path.ends_with(".toml")) return false;
+  if (!path.ends_with(".toml") || is_campaign(path)) return false;  // the campaign's own verb reads it
   if (is_test(path)) return true;
   const auto text = workspace.text(path);
   if (!text) return false;
@@ -325,7 +325,7 @@ Json plant_completion(Workspace& workspace, const Json& params) {
     if (const auto allowed = allowed_at(path, *spot)) offer_allowed(items, *allowed);
     if (spot->key == "program" || spot->key == "plant")
       for (const std::string& file : list_files(std::filesystem::path(path).parent_path().string()))
-        if (spot->key == "program" ? is_program(file) : file.ends_with(".toml") && !is_test(file))
+        if (spot->key == "program" ? is_program(file) : file.ends_with(".toml") && !is_test(file) && !is_campaign(file))
           offer(items, fmt::format("\"{}\"", file), kFile);
   } else {
     for (const std::string& known : known_at(path, *spot, fmt::format("{} = 0", kProbe)))

@@ -244,7 +244,7 @@ std::vector<TestCase> read_test_file(const std::string& path, const std::string&
   PlantReader reader;
   const auto root = runtime::parse_toml(reader, text);
   std::vector<Case> cases;
-  if (root) cases = read_cases(reader, *root);
+  if (root && !runtime::refuse_campaign(reader, *root)) cases = read_cases(reader, *root);
   std::set<std::string> names;
   for (const Case& one : cases) reader.unique(names, one.name, "case", one.place);
   if (!reader.result.errors.empty()) {

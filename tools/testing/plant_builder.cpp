@@ -83,7 +83,7 @@ BuiltPlant build_plant(const TestCase& test, Programs& programs, const RunOption
   std::optional<vm::Rates> rates;
   if (speed != 0) rates = vm::Rates{{speed, speed, speed}};
   std::vector<runtime::PlantError> errors;
-  auto plant = std::make_unique<runtime::Plant>(std::move(file), std::move(images), rates, errors);
+  auto plant = std::make_unique<runtime::Plant>(std::move(file), std::move(images), rates, errors, programs.execution());
   built.messages += mistakes_text(test.plant_path, errors, false);
   if (errors.empty()) built.plant = std::move(plant);
   return built;

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "runtime/unit/unit_program.hpp"
 #include "tools/input/program.hpp"
 #include "tools/test_file/test_case.hpp"
 
@@ -36,6 +37,8 @@ class Programs {
 
   std::shared_ptr<const Program> load(const std::string& path, const stdlib::UnitType* unit);
   bool allow_fmu() const { return flags_.allow_fmu; }
+  // How the plants of tests are executed; what is made of a program they share.
+  const runtime::Execution& execution() const { return execution_; }
   // When nobody loads any more.
   const KnownPrograms& known() const { return known_; }
 
@@ -43,6 +46,7 @@ class Programs {
   Program make(const ProgramName& name) const;
 
   CompileFlags flags_;
+  runtime::Execution execution_{.shelf = std::make_shared<runtime::ProgramShelf>()};
   std::mutex mutex_;
   KnownPrograms known_;
 };

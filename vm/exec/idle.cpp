@@ -105,11 +105,27 @@ Machine::Spin Machine::find_spin(int number, uint32_t longest, Idle& found) {
       if (h_[spin.numbers[n]] != spin.originals[n]) return false;
     return true;
   };
+  // What a turn has left, to see that the loop has settled where it never comes back to its beginning.
+  std::array<int32_t, Spin::kMostChanged> left;
+  uint32_t left_count = 0;
+  const auto settled = [&] {
+    bool same = left_count == spin.count;
+    for (uint32_t n = 0; n < spin.count; ++n) {
+      const int32_t value = h_[spin.numbers[n]];
+      same = same && left[n] == value;
+      left[n] = value;
+    }
+    left_count = spin.count;
+    return same;
+  };
   for (uint32_t n = 1; n <= longest && try_command(number, spin); ++n) {
-    if (t.pc != before.pc || t.depth != before.depth) continue;
-    if (!std::equal(t.calls.begin(), t.calls.begin() + t.depth, before.calls.begin()) || !as_before())
+    if (t.pc != before.pc || t.depth != before.depth ||
+        !std::equal(t.calls.begin(), t.calls.begin() + t.depth, before.calls.begin()))
       continue;
-    spin.length = n;
+    if (as_before())
+      spin.length = n;
+    else if (!settled())
+      continue;
     break;
   }
   for (uint32_t n = 0; n < spin.count; ++n) h_[spin.numbers[n]] = spin.originals[n];

@@ -43,25 +43,32 @@ class AcceptanceFilter {
     const size_t width = (nodes + NodeSet::kWordBits - 1) / NodeSet::kWordBits;
     if (width != width_) {
       std::vector<uint64_t> words(width * kIdentifiers, 0);
-      for (size_t id = 0; id < kIdentifiers; ++id)
-        for (size_t n = 0; n < width_; ++n) words[id * width + n] = words_[id * width_ + n];
+      if (width_ != 0)
+        for (size_t id = 0; id < kIdentifiers; ++id)
+          for (size_t n = 0; n < width_; ++n) words[id * width + n] = words_[id * width_ + n];
       words_ = std::move(words);
       width_ = width;
     }
-    for (size_t id = 0; id < kIdentifiers; ++id) put(static_cast<uint32_t>(id), nodes - 1, true);
+    each_word_of(nodes - 1, [bit = bit_of(nodes - 1)](uint64_t& word) { word |= bit; });
   }
   void close(NodeId node) {
-    for (size_t id = 0; id < kIdentifiers; ++id) put(static_cast<uint32_t>(id), node, false);
+    each_word_of(node, [bit = bit_of(node)](uint64_t& word) { word &= ~bit; });
   }
-  void open(NodeId node, uint32_t id) { put(id, node, true); }
+  void open(NodeId node, uint32_t id) { words_[id * width_ + node / NodeSet::kWordBits] |= bit_of(node); }
   std::span<const uint64_t> takers(uint32_t id) const { return {words_.data() + id * width_, width_}; }
 
  private:
-  void put(uint32_t id, size_t node, bool in) {
-    const uint64_t bit = uint64_t{1} << (node % NodeSet::kWordBits);
-    uint64_t& word = words_[id * width_ + node / NodeSet::kWordBits];
-    word = in ? word | bit : word & ~bit;
+  // For every identifier; with up to 64 nodes the words stand in a row.
+  template <typename Change>
+  void each_word_of(size_t node, Change change) {
+    uint64_t* const words = words_.data() + node / NodeSet::kWordBits;
+    const size_t width = width_;
+    if (width == 1)
+      for (size_t id = 0; id < kIdentifiers; ++id) change(words[id]);
+    else
+      for (size_t id = 0; id < kIdentifiers; ++id) change(words[id * width]);
   }
+  static uint64_t bit_of(size_t node) { return uint64_t{1} << (node % NodeSet::kWordBits); }
   size_t width_ = 0;
   std::vector<uint64_t> words_;  // for each identifier the words of a set
 };

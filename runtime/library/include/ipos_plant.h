@@ -219,7 +219,8 @@ typedef struct ipos_plant_signal_info {
  * IPOS_PLANT_LINE + bus. A telegram is kept from the moment at which one of its signals is found. */
 #define IPOS_PLANT_LINE 0x80000000U
 
-/* Finds a signal once; its number holds as long as the plant is open, also over ipos_plant_restore().
+/* Finds a signal once; its number holds as long as the plant is open, also over ipos_plant_restore()
+ * and ipos_plant_restart().
  * IPOS_PLANT_NO_STATION, IPOS_PLANT_NO_SIGNAL (the message names what there is). In callbacks. */
 ipos_plant_status ipos_plant_find(ipos_plant* plant, uint32_t station, ipos_plant_kind kind, const char* name,
                                   uint32_t* signal);
@@ -372,6 +373,11 @@ ipos_plant_status ipos_plant_save(ipos_plant* plant, void* bytes, size_t* size);
  * telegrams that were not yet received stay as in the plant before. IPOS_PLANT_BAD_STATE, IPOS_PLANT_OTHER_PLANT,
  * IPOS_PLANT_NOT_RECORDED. */
 ipos_plant_status ipos_plant_restore(ipos_plant* plant, const void* bytes, size_t size);
+
+/* At time 0 again, as it was opened, without reading or compiling anything: open once, run many. What was done to the plant
+ * is forgotten, also what ipos_plant_replay() would do again; signals keep their numbers. IPOS_PLANT_REFUSED: it writes memory
+ * files (IPOS_PLANT_WRITE_MEMORY); then nothing has happened. */
+ipos_plant_status ipos_plant_restart(ipos_plant* plant);
 
 /* Does everything again that was done to the plant since time 0, and calls `look` at every full millisecond meanwhile: so
  * what nobody has watched can be watched afterwards. What `look` returns is ignored. The plant is then as it was before.

@@ -78,6 +78,10 @@ std::vector<uint32_t> ProgramWindow::code() const {
   return {words_.begin(), words_.begin() + static_cast<std::ptrdiff_t>(end)};
 }
 
+bool ProgramWindow::empty() const {
+  return std::all_of(words_.begin(), words_.end(), [](uint32_t word) { return word == 0; });
+}
+
 void ProgramWindow::keep() {
   std::vector<uint32_t> words = code();
   if (checksum(words) == origin_)

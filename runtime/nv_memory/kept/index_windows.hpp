@@ -62,6 +62,7 @@ class ProgramWindow final : public IndexWindow {
 
   // The program as it would be started: up to the last word that is not 0, with the command it belongs to.
   std::vector<uint32_t> code() const;
+  bool empty() const;
 
   // What survives power-off; nothing when it is the plant's program.
   const std::optional<NvProgram>& kept() const { return kept_; }

@@ -158,7 +158,7 @@ class Player {
 
   ipos_plant_status call() {
     int64_t now = 0;
-    switch (u8() % 35) {
+    switch (u8() % 36) {
       case 0: ipos_plant_time(plant_, &now); return ipos_plant_run(plant_, now + u8() * int64_t{100'000});
       case 1: return ipos_plant_run(plant_, value());
       case 2:
@@ -218,6 +218,7 @@ class Player {
       case 31: return ipos_plant_journal_at(plant_, u8() % 8U, &entry_);
       case 32: return save();
       case 33: return saves_++ >= kMostSaves ? IPOS_PLANT_OK : ipos_plant_replay(plant_, condition, this);
+      case 34: return ipos_plant_restart(plant_);
       default: return restore();
     }
   }

@@ -24,7 +24,7 @@ inline constexpr std::string_view kFunctions[] = {
     "ipos_plant_node_name", "ipos_plant_serial_send", "ipos_plant_serial_receive", "ipos_plant_line_fault",
     "ipos_plant_parameter_index", "ipos_plant_parameter_text", "ipos_plant_parameter_value",
     "ipos_plant_return_code", "ipos_plant_unit_name", "ipos_plant_unit_signs", "ipos_plant_journal_at", "ipos_plant_save", "ipos_plant_restore",
-    "ipos_plant_replay", "ipos_plant_trace_hash",
+    "ipos_plant_restart", "ipos_plant_replay", "ipos_plant_trace_hash",
 };
 
 consteval size_t function_number(std::string_view name) {
@@ -100,5 +100,6 @@ Result called(Result result) {
 #define ipos_plant_journal_at(...) IPOS_CALLED(ipos_plant_journal_at, __VA_ARGS__)
 #define ipos_plant_save(...) IPOS_CALLED(ipos_plant_save, __VA_ARGS__)
 #define ipos_plant_restore(...) IPOS_CALLED(ipos_plant_restore, __VA_ARGS__)
+#define ipos_plant_restart(...) IPOS_CALLED(ipos_plant_restart, __VA_ARGS__)
 #define ipos_plant_replay(...) IPOS_CALLED(ipos_plant_replay, __VA_ARGS__)
 #define ipos_plant_trace_hash(...) IPOS_CALLED(ipos_plant_trace_hash, __VA_ARGS__)

@@ -151,6 +151,7 @@ TEST(LibraryOpening, MemoryFilesStandBesideThePlant) {
     ipos_plant* plant = nullptr;
     ASSERT_EQ(ipos_plant_open(&source, &plant), IPOS_PLANT_OK) << ipos_plant_message(plant);
     EXPECT_EQ(ipos_plant_run(plant, 10'000'000), IPOS_PLANT_OK);
+    EXPECT_EQ(ipos_plant_restart(plant), writes ? IPOS_PLANT_REFUSED : IPOS_PLANT_OK);
     EXPECT_EQ(ipos_plant_close(plant), IPOS_PLANT_OK);
     EXPECT_EQ(std::filesystem::exists(folder.path("a.nv")), writes);
   }
@@ -298,6 +299,33 @@ TEST(LibraryStates, GoOnAsTheOneThatWasSaved) {
   EXPECT_EQ(saved_state(other), saved);
   const OpenedPlant changed(kTwoDrives, "long n;\nmain() { while (1) n = n + 2; }\n");
   EXPECT_EQ(ipos_plant_restore(changed.plant, saved.data(), saved.size()), IPOS_PLANT_OTHER_PLANT);
+}
+
+// Open once, run many: each run is that of a plant that was just opened, whatever the one before was.
+TEST(LibraryStates, ARestartIsANewPlant) {
+  const auto run = [](const OpenedPlant& plant, int level) {
+    EXPECT_EQ(ipos_plant_write(plant.plant, plant.find("DI05"), level), IPOS_PLANT_OK);
+    plant.run(30);
+    return hash_of(plant);
+  };
+  const OpenedPlant plant(kTwoDrives, kGoesOn);
+  const uint32_t n = plant.find("n");
+  const uint64_t low = run(plant, 0);
+  const int64_t counted = plant.value(n);
+  EXPECT_EQ(ipos_plant_drive_fault(plant.plant, 0, 26), IPOS_PLANT_OK);
+  EXPECT_EQ(ipos_plant_power(plant.plant, 1, false), IPOS_PLANT_OK);
+  plant.run(40);
+  EXPECT_EQ(ipos_plant_restart(plant.plant), IPOS_PLANT_OK) << plant.message();
+  int64_t now = -1;
+  EXPECT_EQ(ipos_plant_time(plant.plant, &now), IPOS_PLANT_OK);
+  EXPECT_EQ(now, 0);
+  EXPECT_EQ(plant.value(n), 0) << "a signal keeps its number and reads the plant of now";
+  const uint64_t high = run(plant, 1);
+  EXPECT_NE(high, low);
+  EXPECT_EQ(ipos_plant_restart(plant.plant), IPOS_PLANT_OK);
+  EXPECT_EQ(run(plant, 0), low);
+  EXPECT_EQ(plant.value(n), counted);
+  EXPECT_EQ(run(OpenedPlant(kTwoDrives, kGoesOn), 1), high);
 }
 
 TEST(LibraryStates, TagsBeginAgainWithTheState) {
