@@ -81,21 +81,18 @@ Decoded decode(std::span<const uint32_t> code, uint32_t address) {
   std::array<uint32_t, 2> used{0xFF, 0};  // bits of the packed words that mean something
   size_t small = 0;
   uint32_t packed_words = 1;
-  for (auto operand = out.instruction.operands.begin(); const OperandKind kind : row->kinds) {
-    int32_t& value = *operand++;
-    if (!is_small(kind)) continue;
+  for (size_t n = 0; n < row->operand_count; ++n) {
+    if (!is_small(row->kinds[n])) continue;
     const Field& field = kFields[small++];
     packed_words = field.word + 1U;
     used[field.word] |= uint32_t{field.mask} << field.shift;
-    value = static_cast<int32_t>((code[address + field.word] >> field.shift) & field.mask);
+    out.instruction.operands[n] = static_cast<int32_t>((code[address + field.word] >> field.shift) & field.mask);
   }
   for (uint32_t word = 0; word < packed_words; ++word)
     if ((code[address + word] & ~used[word]) != 0) out.status = DecodeStatus::ReservedBits;
   uint32_t next = packed_words;
-  for (auto operand = out.instruction.operands.begin(); const OperandKind kind : row->kinds) {
-    int32_t& value = *operand++;
-    if (is_word(kind)) value = static_cast<int32_t>(code[address + next++]);
-  }
+  for (size_t n = 0; n < row->operand_count; ++n)
+    if (is_word(row->kinds[n])) out.instruction.operands[n] = static_cast<int32_t>(code[address + next++]);
   return out;
 }
 
