@@ -12,7 +12,7 @@
 #include <tl/expected.hpp>
 
 #include "runtime/plant/plant.hpp"
-#include "runtime/unit/unit_program.hpp"
+#include "runtime/unit/program_shelf.hpp"
 
 namespace ipos::library {
 

@@ -13,6 +13,7 @@
 #include "runtime/plant_file/serial_plan.hpp"
 #include "runtime/plant_file/state_names.hpp"
 #include "runtime/signals/find.hpp"
+#include "runtime/unit/program_shelf.hpp"
 
 namespace ipos::runtime {
 namespace {

@@ -7,6 +7,7 @@
 #include <array>
 #include <utility>
 
+#include "runtime/unit/program_shelf.hpp"
 #include "stdlib/system_variables.hpp"
 #include "vm/verify/writes.hpp"
 

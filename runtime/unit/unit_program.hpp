@@ -1,11 +1,9 @@
 // A program as units run it: its verified words, and what the engines make of them. It does not change, so units with the same
-// program share one. A shelf keeps those of plants that are built again and again.
+// program share one (program_shelf.hpp).
 #pragma once
 
 #include <cstdint>
-#include <list>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -48,20 +46,6 @@ class UnitProgram {
   bool may_order_ = false;
   bool fast_ = false;
   Execution::Compiler compiler_ = nullptr;
-};
-
-// The programs that came last. Plants of several threads may share one.
-class ProgramShelf {
- public:
-  // Null: it is not there.
-  std::shared_ptr<const UnitProgram> find(std::span<const uint32_t> code, const vm::Limits& limits, const Execution& execution);
-  void put(std::shared_ptr<const UnitProgram> program);
-
- private:
-  static constexpr size_t kKept = 128;  // ours: 20 KB each, if they are long
-
-  std::mutex mutex_;
-  std::list<std::shared_ptr<const UnitProgram>> kept_;  // the last one used first
 };
 
 }  // namespace ipos::runtime

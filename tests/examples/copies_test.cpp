@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/plant/trace_hash.hpp"
-#include "runtime/unit/unit_program.hpp"
+#include "runtime/unit/program_shelf.hpp"
 #include "tests/examples/plants.hpp"
 #include "tools/input/plant_input.hpp"
 

@@ -1,7 +1,7 @@
 // Engines by name; machine code for the runtime, which does not know vm/jit.
 #include "tools/input/engine.hpp"
 
-#include "runtime/unit/unit_program.hpp"
+#include "runtime/unit/program_shelf.hpp"
 #include "tools/cli/failure.hpp"
 #include "vm/jit/jit.hpp"
 

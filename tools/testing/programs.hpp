@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/unit/unit_program.hpp"
+#include "runtime/unit/program_shelf.hpp"
 #include "tools/input/program.hpp"
 #include "tools/test_file/test_case.hpp"
 
