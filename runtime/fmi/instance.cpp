@@ -184,8 +184,8 @@ void Instance::tell_journal() {
 
 Status Instance::check(std::span<const uint32_t> references, Types types) {
   for (const uint32_t reference : references) {
-    const bool is_member = notified_terminal(reference) != nullptr;
-    if (reference > variables_.all.size() && !is_member) return fail(fmt::format("no variable has the value reference {}", reference));
+    const bool is_member = reference > variables_.all.size();
+    if (is_member && notified_terminal(reference) == nullptr) return fail(fmt::format("no variable has the value reference {}", reference));
     const Type type = is_member ? Type::Boolean : reference == 0 ? Type::Real : variables_.all[reference - 1].type;
     if (std::find(types.begin(), types.end(), type) == types.end())
       return fail(fmt::format("{} is of another type", is_member        ? "BusNotifications"

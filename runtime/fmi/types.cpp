@@ -93,13 +93,19 @@ bool Types::make_enumeration(Variable& variable) {
   } else {
     return false;
   }
-  auto items = items_of(signal);
+  const auto known = enumerations_.find(name);
+  const bool is_new = known == enumerations_.end();
+  std::vector<std::pair<int32_t, std::string>> made;
+  if (is_new) made = items_of(signal);
+  const auto& items = is_new ? made : out_.enumerations[known->second].items;
   const int64_t now = signal.read();
   if (std::none_of(items.begin(), items.end(), [now](const auto& item) { return item.first == now; })) return false;
-  const auto [known, is_new] = enumerations_.try_emplace(name, out_.enumerations.size());
-  if (is_new) out_.enumerations.push_back({name, std::move(items)});
   variable.type = Type::Enumeration;
-  variable.enumeration = known->second;
+  variable.enumeration = is_new ? out_.enumerations.size() : known->second;
+  if (is_new) {
+    enumerations_.emplace(name, out_.enumerations.size());
+    out_.enumerations.push_back({name, std::move(made)});
+  }
   return true;
 }
 
