@@ -12,7 +12,8 @@
 
 namespace ipos::stdlib {
 
-enum class UnsimulatedScope : uint8_t { Unit, Bus };
+// Ideal: true while the plant does not ask for control = "real".
+enum class UnsimulatedScope : uint8_t { Unit, Bus, Ideal };
 
 // A row as it stands in the file, for documents.
 struct UnsimulatedRow {

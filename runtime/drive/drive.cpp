@@ -22,7 +22,7 @@ constexpr int kAutoResets = 3;
 constexpr int32_t kOvervoltage = 900'000;  // mV, where the unit protects itself; ours
 
 namespace faults {
-constexpr uint8_t kDcLink = 7, kSpeedMonitoring = 8, kHeatSink = 11, kExternal = 26, kLimitSwitches = 27,
+constexpr uint8_t kOvercurrent = 1, kDcLink = 7, kSpeedMonitoring = 8, kHeatSink = 11, kExternal = 26, kLimitSwitches = 27,
                   kFieldbus = 28, kTemperatureSensor = 31, kRs485 = 43, kSbus2 = 46, kSbus = 47,
                   kMotorOverload = 84;
 }  // namespace faults
@@ -39,8 +39,10 @@ constexpr uint8_t fault_of(PoSource source) {
 
 // A ramp time is the time for a change of speed: by 3000 rpm on MOVIDRIVE (ours), by 50 Hz on MOVITRAC 07 (its manual,
 // chapter 6.1) and the other MOVITRAC (ours).
-MachineData machine_of(MachineData machine, stdlib::Traits traits) {
-  if (traits.has(Trait::RampsOf50Hz)) machine.ramp_reference = machine.rated_speed;
+MachineData machine_of(MachineData machine, const ParameterStore& parameters) {
+  constexpr int32_t kOf50Hz = 3'000'000;
+  if (parameters.unit().traits.has(Trait::RampsOf50Hz)) machine.ramp_reference = kOf50Hz / std::max(1, machine.pole_pairs);
+  machine.real |= parameters.options().real_control;
   return machine;
 }
 
@@ -59,7 +61,7 @@ Drive::Drive(ParameterStore& parameters, const MachineData& machine)
       reader_(parameters),
       settings_(reader_.read(parameters)),
       settings_version_(parameters.changes()),
-      state_(Axis(machine_of(machine, traits_))),
+      state_(Axis(machine_of(machine, parameters))),
       shown_for_(settings_version_ - 1) {
   now_.set(&Situation::starting_up, starting_up());
   parameters.connect(*this);
@@ -459,6 +461,7 @@ void Drive::watch_machine() {
 
 // P500: 1 motor mode, 2 regenerative, 3 both (1053 1610 p. 77).
 void Drive::count_limited() {
+  if (state_.axis.overcurrent()) raise_fault(faults::kOvercurrent);
   const AxisState& axis = state_.axis.state();
   const int32_t mode = set().speed_monitoring;
   const bool regenerative = (axis.torque < 0) != (axis.speed < 0);

@@ -9,6 +9,7 @@
 #include <span>
 #include <string_view>
 
+#include "runtime/drive/analog_outputs.hpp"
 #include "runtime/drive/control.hpp"
 #include "runtime/drive/decisions.hpp"
 #include "runtime/drive/link_watch.hpp"
@@ -157,8 +158,13 @@ class Drive final : private DriveLink {
   bool brake_released() const { return state_.axis.brake_released(); }
   bool current_limited() const { return state_.axis.current_limited(); }
   bool standing() const { return state_.axis.standing(); }
-  int32_t shown_speed() const { return set().change_direction == 1 ? -speed() : speed(); }  // P000
+  int32_t shown_speed() const {  // P000
+    const int32_t speed = noisy(this->speed(), state_.axis.machine().rated_speed, Noise::Speed);
+    return set().change_direction == 1 ? -speed : speed;
+  }
   uint16_t outputs() const { return state_.outputs.levels(); }
+  // AO1 and AO2 (0, 1); `ipos` is the program's value for it, H478 or H479.
+  AnalogLevel analog_output(size_t output, int32_t ipos) const;
 
   // What the master of a master/slave group sends; its slaves scale it (P751): control word 1, the setpoint that
   // P750 chooses and the third IPOS PI-DATA word of the program.
@@ -191,6 +197,13 @@ class Drive final : private DriveLink {
   static constexpr int32_t kOvertemperature =
       90;  // °C of the heat sink, where the unit protects itself; ours
   static constexpr int32_t kFullUtilization = 100'000;
+
+  // An actual value as it is measured ([station] noise): another one of each kind in each millisecond.
+  enum class Noise : uint8_t { Speed, Current, ActiveCurrent };
+  int32_t noisy(int32_t value, int32_t whole, Noise kind) const {
+    return state_.axis.machine().noise == 0 ? value : with_noise(value, whole, kind);
+  }
+  int32_t with_noise(int32_t value, int32_t whole, Noise kind) const;
 
   std::optional<int32_t> live_value(uint16_t index) const override;
   bool controller_inhibited() const override;

@@ -14,8 +14,7 @@ namespace {
 // Part number of P076, as in the example of both lists (1053 1610 p. 69, MOVITRAC 07 chapter 10.3); that it
 // is the one of every unit is ours.
 constexpr int32_t kFirmwarePart = 822'609'700;
-// Rated current of the unit in mA, of the 1.5 kW the machine data describe (ours).
-constexpr int32_t kRatedCurrent = 4'000;
+constexpr int32_t kIn = 100'000;  // 100 % of IN
 
 }  // namespace
 
@@ -101,13 +100,13 @@ Drive::Words Drive::pi() const {
 
 uint16_t Drive::pi_word(size_t n) const {
   const AxisState& axis = state_.axis.state();
-  const int32_t speed = set().change_direction == 1 ? -axis.speed : axis.speed;
+  const int32_t speed = shown_speed();
   switch (static_cast<PiAssignment>(settings().pi[n])) {
     case PiAssignment::None: return 0;
     case PiAssignment::Speed: return word_of_speed(speed);
     case PiAssignment::RelativeSpeed: return relative_of_speed(speed, set().maximum_speed);
-    case PiAssignment::OutputCurrent: return word_of_current(axis.output_current);
-    case PiAssignment::ActiveCurrent: return word_of_current(axis.active_current);
+    case PiAssignment::OutputCurrent: return word_of_current(noisy(axis.output_current, kIn, Noise::Current));
+    case PiAssignment::ActiveCurrent: return word_of_current(noisy(axis.active_current, kIn, Noise::ActiveCurrent));
     case PiAssignment::PositionLow: return static_cast<uint16_t>(axis.position & 0xFFFF);
     case PiAssignment::PositionHigh: return static_cast<uint16_t>(static_cast<uint32_t>(axis.position) >> 16);
     case PiAssignment::StatusWord1: return status_word_1();
@@ -136,6 +135,24 @@ Drive::Words Drive::master_words(SlaveSetpoint what) const {
   const uint16_t setpoint = what == SlaveSetpoint::Speed ? word_of_speed(axis.setpoint)
                                                          : word_of_current(told ? order_.current : axis.active_current);
   return {control, setpoint, state_.ipos_pi[2]};
+}
+
+AnalogLevel Drive::analog_output(size_t output, int32_t ipos) const {
+  const Settings& s = settings();
+  const AnalogOutputSettings chosen = output == 0 ? AnalogOutputSettings{s.ao1_function, s.ao1_scaling, s.ao1_mode}
+                                                  : AnalogOutputSettings{s.ao2_function, s.ao2_scaling, s.ao2_mode};
+  return analog_level(chosen, state_.axis.state(), order_.target, ipos);
+}
+
+// Evenly spread, a hash of the seed, the millisecond and the kind.
+int32_t Drive::with_noise(int32_t value, int32_t whole, Noise kind) const {
+  const MachineData& machine = state_.axis.machine();
+  uint64_t hash = (uint64_t{machine.noise_seed} << 32 | state_.mains_ms << 2 | static_cast<uint32_t>(kind)) +
+                  static_cast<uint64_t>(parameters_.value(index::kMainsOnTime)) * 0x9E3779B97F4A7C15U;
+  for (const int shift : {30, 27, 31}) hash = (hash ^ hash >> shift) * 0xBF58476D1CE4E5B9U;
+  const auto share = static_cast<int64_t>(hash >> 44) - (1 << 19);  // of 2^19
+  const int64_t most = int64_t{whole} * machine.noise / 100'000;
+  return static_cast<int32_t>(std::clamp<int64_t>(value + (most * share >> 19), INT32_MIN, INT32_MAX));
 }
 
 // P000 x P850 / P851 (1053 1610 p. 68, 81), as far as 32 bits go.
@@ -180,12 +197,12 @@ std::optional<int32_t> Drive::live_value(uint16_t index) const {
   switch (index) {
     case index::kFrequency: return axis.frequency;
     case index::kActualPosition: return axis.position;
-    case index::kOutputCurrent: return axis.output_current;
+    case index::kOutputCurrent: return noisy(axis.output_current, kIn, Noise::Current);
     case index::kOutputCurrentAmpere:
-      return static_cast<int32_t>(int64_t{axis.output_current} * kRatedCurrent / 100'000);
-    case index::kRatedCurrent: return kRatedCurrent;
+      return static_cast<int32_t>(int64_t{noisy(axis.output_current, kIn, Noise::Current)} * state_.axis.machine().unit_current / 100'000);
+    case index::kRatedCurrent: return state_.axis.machine().unit_current;
     case index::kFirmware: return kFirmwarePart + parameters_.options().firmware;
-    case index::kActiveCurrent: return axis.active_current;
+    case index::kActiveCurrent: return noisy(axis.active_current, kIn, Noise::ActiveCurrent);
     case index::kMotorUtilization1: return now_->second_set ? 0 : axis.motor_utilization;
     case index::kMotorUtilization2: return now_->second_set ? axis.motor_utilization : 0;
     case index::kDcLink: return axis.dc_link;

@@ -107,6 +107,17 @@ AxisOrder Drive::axis_order(Command command) const {
   if (limit) order.current_limit = std::clamp(*limit, 0, order.current_limit);
   constexpr int32_t kAi2IsLimit = 2;
   if (s.ai2_mode == kAi2IsLimit) order.current_limit = share_of_ai2(order.current_limit);
+  order.control.encoder = has_encoder(p.operating_mode);
+  order.control.hoist = is_hoist(p.operating_mode);
+  order.control.dc_braking = has_dc_braking(p.operating_mode);
+  order.control.flying_start = has_flying_start(p.operating_mode);
+  order.control.adjusted = p.adjusted == 1;
+  order.control.start_stop = p.start_stop_speed;
+  order.control.slip_compensation = p.slip_compensation;
+  order.control.boost = p.boost;
+  order.control.ixr = p.ixr_compensation;
+  order.control.gain = s.speed_gain;
+  order.control.time_us = s.speed_time;
   return order;
 }
 

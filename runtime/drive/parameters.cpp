@@ -259,10 +259,14 @@ void ParameterStore::block_process_data(const Parameter& changed) {
                   " was changed: PO data have no effect until P876 PO data enable is written ON again");
 }
 
+bool ParameterStore::counts(const stdlib::Unsimulated& one) const {
+  return one.row->scope != stdlib::UnsimulatedScope::Ideal || !options_.real_control;
+}
+
 void ParameterStore::tell(uint16_t index) {
   for (const stdlib::Unsimulated& one : stdlib::unsimulated(unit_, index)) {
     const int32_t value = this->value(index);
-    if (one.applies(value) && told_.emplace(index, one.row).second) news_.push_back(one.text(value));
+    if (counts(one) && one.applies(value) && told_.emplace(index, one.row).second) news_.push_back(one.text(value));
   }
 }
 
@@ -271,7 +275,7 @@ std::vector<std::string> ParameterStore::tell_settings() {
   for (const stdlib::Unsimulated& one : stdlib::unsimulated(unit_)) {  // in the order of the indices, as the slots
     while (slot->parameter != one.parameter) ++slot;
     const int32_t value = read(*slot);
-    if (one.applies(value) && told_.emplace(one.parameter->index, one.row).second) news_.push_back(one.text(value));
+    if (counts(one) && one.applies(value) && told_.emplace(one.parameter->index, one.row).second) news_.push_back(one.text(value));
   }
   return take_news();
 }

@@ -23,6 +23,10 @@
 #include "stdlib/services.hpp"
 #include "stdlib/unit_types.hpp"
 
+namespace ipos::stdlib {
+struct Unsimulated;
+}
+
 namespace ipos::runtime {
 
 using ParameterService = stdlib::Service;
@@ -84,6 +88,8 @@ struct DriveOptions {
   uint8_t firmware = 16;
   // How long the unit is not ready after power-on. No manual read has a figure; 0 is ours.
   uint32_t start_up_ms = 0;
+  bool real_control = false;  // speed and current are what motor and load make of them; else the speed is the setpoint's
+  bool own_motor = false;     // the plant describes it
 
   // The version is at least this one of the standard unit, or of LOGODrive.
   bool firmware_from(uint8_t standard, uint8_t of_logodrive) const {
@@ -196,6 +202,7 @@ class ParameterStore {
   bool has_card(stdlib::OptionCard card) const;
   bool store(Slot& slot, int32_t value, bool nonvolatile);
   void tell(uint16_t index);
+  bool counts(const stdlib::Unsimulated& one) const;
   void block_process_data(const stdlib::Parameter& changed);
   void tell_memory();
   void take_effect(uint16_t index, int32_t value);

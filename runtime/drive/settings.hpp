@@ -47,6 +47,12 @@ constexpr bool is_torque_control(int32_t operating_mode) {
   return operating_mode == 12 || operating_mode == 17;
 }
 
+// P700: from 5 on the modes have an encoder; those of MOVITRAC (21, 22) go by a V/f characteristic. P701 has the first five.
+constexpr bool has_encoder(int32_t operating_mode) { return operating_mode >= 5 && operating_mode <= 20; }
+constexpr bool is_hoist(int32_t operating_mode) { return operating_mode == 2 || operating_mode == 7; }
+constexpr bool has_dc_braking(int32_t operating_mode) { return operating_mode == 3 || operating_mode == 22; }
+constexpr bool has_flying_start(int32_t operating_mode) { return operating_mode == 4; }
+
 // What a master sends to its slaves as setpoint (P750).
 enum class SlaveSetpoint : uint8_t { Speed, Torque, LoadShare };
 constexpr SlaveSetpoint slave_setpoint(int32_t p750) {

@@ -5,75 +5,21 @@
 #include <cstdlib>
 #include <utility>
 
+#include "runtime/motion/axis_steps.hpp"
+
 namespace ipos::runtime {
-namespace {
-
-// 4096 increments a turn: speed in 1/1000 rpm x 4096 / 60000000 increments a millisecond. With twice the mean
-// speed the fraction is 8 / 234375.
-constexpr int64_t kIncrementShare = 8;
-constexpr int64_t kIncrement = 234'375 * kFine;
-
-// A shaft that something outside turns is never quite at 0: the brake may fall in below this (ours).
-constexpr FineSpeed kNearlyStanding = 1'000 * kFine;
-
-FineSpeed target_of(const AxisOrder& order) {
-  const bool moves = order.command == AxisCommand::Run || order.command == AxisCommand::Follow;
-  return moves ? fine_speed(order.target) : 0;
-}
-
-}  // namespace
 
 Axis::Axis(const MachineData& machine) : AxisParts(machine) { show_power(); }
 
 void Axis::set_position(int32_t position) {
+  details_.zero += static_cast<uint32_t>(position) - position_;
   position_ = static_cast<uint32_t>(position);
   position_rest_ = 0;
   state_.position = position;
 }
 
-double Axis::part_of_increment() const { return static_cast<double>(position_rest_) / static_cast<double>(kIncrement); }
-
-// The motor is magnetized and follows the setpoint.
-inline bool Axis::has_torque(AxisPhase phase) {
-  return phase == AxisPhase::Releasing || phase == AxisPhase::Moving || phase == AxisPhase::Applying;
-}
-
-inline bool Axis::brake_open() const {
-  return sequence_.phase() == AxisPhase::Releasing || sequence_.phase() == AxisPhase::Moving;
-}
-
-inline void Axis::advance_sequence(const AxisOrder& order) {
-  BrakeTimes times{order.premagnetize_ms, order.brake_release_ms, order.brake_apply_ms};
-  if (!order.brake_function) times.release = times.apply = 0;
-  switch (order.command) {
-    case AxisCommand::Inhibit: return sequence_.inhibit();
-    case AxisCommand::Stop: {
-      const bool standing = std::abs(speed_) <= (machine_.driven ? kNearlyStanding : 0) && ramp_.output() == 0;
-      return sequence_.stop(times, standing, order.standstill_current > 0);
-    }
-    case AxisCommand::HoldZero:
-    case AxisCommand::Run:
-    case AxisCommand::Follow:
-    case AxisCommand::Torque: return sequence_.enable(times);
-  }
-}
-
-inline void Axis::advance_setpoint(const AxisOrder& order) {
-  // A motor that still turns when its torque comes back is caught at its speed (ours).
-  if (!has_torque(state_.phase)) ramp_.set(speed_);
-  if (sequence_.phase() != AxisPhase::Moving) return;
-  if (order.command >= AxisCommand::Follow)
-    return ramp_.set(order.command == AxisCommand::Follow ? target_of(order) : speed_);
-  // At the current limit the ramp waits for the shaft, or a stop would begin with more speed (ours).
-  if (state_.current_limited) ramp_.wait_at(speed_);
-  if (order.command == AxisCommand::Run) return ramp_.step(target_of(order), order.ramp);
-  const uint32_t ms = order.stop_ramp_ms;
-  ramp_.step(0, {ms, ms, ms, ms, 0});
-}
-
-inline Resistance Axis::resistance(const AxisOrder& order, bool brake_acts) const {
-  return {machine_.load_torque + std::clamp(order.load_torque, -kTopTorque, kTopTorque),
-          machine_.friction + (brake_acts ? machine_.brake_torque : 0)};
+double Axis::part_of_increment() const {
+  return static_cast<double>(position_rest_) / static_cast<double>(axis_steps::kIncrement);
 }
 
 inline Motion Axis::drive_to(FineSpeed setpoint, const AxisOrder& order, bool brake_acts) {
@@ -90,31 +36,6 @@ inline Motion Axis::advance_shaft(const AxisOrder& order) {
   return {fine_speed(order.shaft_speed), 0, false};
 }
 
-inline void Axis::count_position(int64_t way) {
-  position_rest_ += way;
-  int64_t increments = position_rest_ / kIncrement;
-  position_rest_ %= kIncrement;
-  if (position_rest_ < 0) {  // the counter rounds down in both directions
-    position_rest_ += kIncrement;
-    --increments;
-  }
-  position_ += static_cast<uint32_t>(increments);
-}
-
-// The power section follows the shaft; what nobody looks at every millisecond is shown when somebody asks.
-[[gnu::always_inline]] inline void Axis::move(const AxisOrder& order, Supply supply, const Motion& motion) {
-  count_position((speed_ + motion.speed) * kIncrementShare);
-  speed_ = motion.speed;
-  state_.standing = speed_ == 0;
-  state_.current_limited = motion.limited;
-  state_.speed = whole_speed(speed_);
-  state_.position = static_cast<int32_t>(position_);
-  state_.torque = static_cast<int32_t>(motion.torque);
-  power_.step({supply, state_.speed, motion.torque, order.current_limit, order.standstill_current});
-  state_.output_current = power_.output_current();
-  power_shown_ = false;
-}
-
 void Axis::show_power() const {
   power_shown_ = true;
   state_.active_current = power_.active_current();
@@ -124,6 +45,7 @@ void Axis::show_power() const {
   state_.heat_sink = power_.heat_sink();
   state_.utilization = power_.utilization();
   state_.motor_utilization = power_.motor_utilization();
+  if (detailed_) show_detail();
 }
 
 // Sequence, setpoint and shaft, each of which may have something to do.
@@ -131,11 +53,7 @@ void Axis::go_through(const AxisOrder& order) {
   advance_sequence(order);
   advance_setpoint(order);
   const AxisPhase phase = sequence_.phase();
-  Supply supply = Supply::Off;
-  if (phase == AxisPhase::Magnetizing) supply = Supply::Magnetizing;
-  if (phase == AxisPhase::StandstillCurrent) supply = Supply::DirectCurrent;
-  if (has_torque(phase)) supply = Supply::Driving;
-  move(order, supply, advance_shaft(order));
+  move(order, axis_steps::supply_of(phase), advance_shaft(order));
 
   state_.phase = phase;
   state_.output_stage = phase != AxisPhase::Off;
@@ -179,7 +97,8 @@ void Axis::advance(Ticks ticks) {
   power_shown_ = false;
   if (speed_ == 0) return;
   // The whole increments of a tick and what is left, so that no product overflows.
-  const int64_t way = 2 * speed_ * kIncrementShare;
+  using axis_steps::kIncrement;
+  const int64_t way = 2 * speed_ * axis_steps::kIncrementShare;
   position_ += static_cast<uint32_t>(way / kIncrement * ticks);
   constexpr uint32_t kMost = 1 << 12;
   for (; ticks > kMost; ticks -= kMost) count_position(way % kIncrement * kMost);

@@ -1,16 +1,21 @@
 // One axis: ramp, brake, motor and load, advanced by one millisecond a tick. Everything is in the units of
 // the parameters: 1/1000 rpm, 1/1000 % of IN, ms, mV; the position counts 4096 increments a turn (IPOSplus p.
-// 34). Exact integers, no allocation: an Axis is a plain value, a copy of it is a snapshot.
+// 34). Exact integers but for what axis_in_detail.cpp adds, no allocation: an Axis is a plain value, a copy of it is a snapshot.
 #pragma once
 
 #include <cstdint>
 #include <type_traits>
 
+#include "runtime/motion/brake.hpp"
 #include "runtime/motion/brake_sequence.hpp"
+#include "runtime/motion/control_order.hpp"
 #include "runtime/motion/machine_data.hpp"
 #include "runtime/motion/power_section.hpp"
 #include "runtime/motion/ramp.hpp"
+#include "runtime/motion/second_mass.hpp"
 #include "runtime/motion/shaft.hpp"
+#include "runtime/motion/speed_control.hpp"
+#include "runtime/motion/voltage_control.hpp"
 #include "runtime/part/part.hpp"
 
 namespace ipos::runtime {
@@ -40,6 +45,7 @@ struct AxisOrder {
   uint16_t brake_release_ms = 0;  // P731
   uint16_t brake_apply_ms = 0;    // P732
   uint16_t premagnetize_ms = 0;   // P323
+  ControlOrder control;           // of MachineData::real
 };
 
 struct AxisState {
@@ -65,13 +71,28 @@ struct AxisState {
   bool operator==(const AxisState&) const = default;
 };
 
+// What a machine has beyond the plainest shaft (is_detailed()).
+struct AxisDetails {
+  explicit AxisDetails(const MachineData& machine) : voltage(machine), control(machine), second(machine) {}
+  bool operator==(const AxisDetails&) const = default;
+
+  Brake brake;
+  VoltageControl voltage;
+  SpeedControl control;
+  SecondMass second;
+  uint32_t zero = 0;          // of the machine, as the counter counts
+  bool has_encoder = false;   // by the last order
+};
+
 // What an Axis is made of.
 struct AxisParts {
   explicit AxisParts(const MachineData& machine)
       : machine_(within_limits(machine)),
         ramp_(machine_.ramp_reference),
         shaft_(machine_),
-        power_(machine_) {}
+        power_(machine_),
+        detailed_(is_detailed(machine_)),
+        details_(machine_) {}
   bool operator==(const AxisParts&) const = default;
 
   MachineData machine_;
@@ -85,6 +106,8 @@ struct AxisParts {
   mutable AxisState state_;
   mutable uint32_t behind_ = 0;      // ticks of advance() that the power section has not seen yet
   mutable bool power_shown_ = true;  // the state is as the power section
+  bool detailed_;
+  AxisDetails details_;
 };
 
 class Axis : private AxisParts {
@@ -94,7 +117,9 @@ class Axis : private AxisParts {
   // One millisecond under this order; tick() shows it, too.
   void step(const AxisOrder& order) {
     catch_up();
-    if (order.command >= AxisCommand::Follow && state_.phase == AxisPhase::Moving)
+    if (detailed_)
+      go_in_detail(order);
+    else if (order.command >= AxisCommand::Follow && state_.phase == AxisPhase::Moving)
       go_directly(order);
     else
       go_through(order);
@@ -106,7 +131,7 @@ class Axis : private AxisParts {
   // What so many ticks under the last order do, at most bound() of them. Only while no ramp runs and the DC
   // link stays as it is: then only position, temperatures and energy change.
   void advance(Ticks ticks);
-  Ticks bound() const { return power_.bound(); }
+  Ticks bound() const { return detailed_ && (speed_ != 0 || machine_.noise != 0) ? 0 : power_.bound(); }
   friend bool operator==(const Axis& a, const Axis& b) {
     a.state();
     b.state();
@@ -133,6 +158,8 @@ class Axis : private AxisParts {
   int32_t setpoint() const { return state_.setpoint; }
   int32_t output_current() const { return state_.output_current; }
   const MachineData& machine() const { return machine_; }
+  // The motor was told a field that it cannot follow: more current than any limiter is quick enough for.
+  bool overcurrent() const { return details_.voltage.overcurrent(); }
   // Of the next ticks while it goes on: the highest values, and the most energy for one tick (Ws).
   int32_t heat_sink_ahead() const { return power_.heat_sink_ahead(); }
   int32_t motor_utilization_ahead() const { return power_.motor_utilization_ahead(); }
@@ -149,6 +176,16 @@ class Axis : private AxisParts {
   void go_through(const AxisOrder& order);
   void advance_sequence(const AxisOrder& order);
   void advance_setpoint(const AxisOrder& order);
+  // axis_in_detail.cpp
+  void go_in_detail(const AxisOrder& order);
+  bool has_stopped(const AxisOrder& order) const;
+  void advance_real_setpoint(const AxisOrder& order);
+  void leap_to_start(const AxisOrder& order);
+  bool brakes_by_current(const AxisOrder& order) const;
+  Motion drive_in_detail(const AxisOrder& order, const Resistance& resistance);
+  Motion drive_really(const AxisOrder& order, int64_t torque_limit, const Resistance& resistance);
+  void move_second(const AxisOrder& order, const Resistance& resistance, int64_t load, Motion& motion);
+  void show_detail() const;
   Motion advance_shaft(const AxisOrder& order);
   Motion drive_to(FineSpeed setpoint, const AxisOrder& order, bool brake_acts);
   Resistance resistance(const AxisOrder& order, bool brake_acts) const;
@@ -160,6 +197,7 @@ class Axis : private AxisParts {
   void draw_and_warm() const;
   void show_power() const;
 
+  static FineSpeed target_of(const AxisOrder& order);
   static bool has_torque(AxisPhase phase);
   bool brake_open() const;
 };

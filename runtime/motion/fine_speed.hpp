@@ -23,6 +23,12 @@ constexpr int32_t whole_speed(FineSpeed speed) {
   return static_cast<int32_t>((speed + kFine / 2 - (speed < 0 ? 1 : 0)) >> kFineSpeedBits);
 }
 
+// Of a speed in the same unit with a point, toward zero.
+constexpr FineSpeed fine_of(double speed) {
+  constexpr auto kTop = static_cast<double>(kTopFine);
+  return static_cast<FineSpeed>(std::clamp(speed, -kTop, kTop));
+}
+
 constexpr int sign_of(int64_t value) { return value < 0 ? -1 : value > 0 ? 1 : 0; }
 
 }  // namespace ipos::runtime

@@ -25,7 +25,11 @@ int64_t root(int64_t value) {
 }  // namespace
 
 PowerSection::PowerSection(const MachineData& machine)
-    : machine_(machine),
+    : machine_{machine.rated_speed, machine.rated_slip,     machine.pole_pairs,           machine.rated_power,
+               machine.ambient,     machine.heat_sink_rise, machine.rated_active_current, machine.magnetizing_current},
+      active_(machine_.rated_active),
+      magnetizing_(machine_.rated_magnetizing),
+      charge_per_power_(kChargePerPower * machine.rated_power / machine.unit_power),
       continuous_heat_(square(machine.continuous_current) / kHundredPercent),
       rated_heat_(std::max<int64_t>(
           1, (square(machine.rated_active_current) + square(machine.magnetizing_current)) / kHundredPercent)),
@@ -43,18 +47,27 @@ PowerSection::PowerSection(const MachineData& machine)
 void PowerSection::find_torque_limit(int32_t current_limit) {
   limit_for_ = current_limit;
   const int64_t limit = std::clamp(current_limit, 0, kTopCurrent);
-  const int64_t magnetizing = std::min<int64_t>(machine_.magnetizing_current, limit);
+  const int64_t magnetizing = std::min<int64_t>(magnetizing_, limit);
   const int64_t active = root(square(limit) - square(magnetizing));
-  torque_limit_ = std::min<int64_t>(kTopTorque, active * kHundredPercent / machine_.rated_active_current);
+  torque_limit_ = std::min<int64_t>(kTopTorque, active * kHundredPercent / active_);
+}
+
+void PowerSection::set_flux(int32_t flux) {
+  if (flux == flux_) return;
+  flux_ = flux;
+  active_ = static_cast<int32_t>(std::min<int64_t>(kTopCurrent, int64_t{machine_.rated_active} * 1'000 / flux));
+  magnetizing_ = static_cast<int32_t>(std::min<int64_t>(kTopCurrent, int64_t{machine_.rated_magnetizing} * flux / 1'000));
+  find_torque_limit(limit_for_);
+  find_currents(currents_);
 }
 
 void PowerSection::find_currents(const Currents& currents) {
   currents_ = currents;
   const bool driving = currents.supply == Supply::Driving;
-  const int64_t active = currents.torque * machine_.rated_active_current / kHundredPercent;
+  const int64_t active = std::clamp<int64_t>(currents.torque * active_ / kHundredPercent, -10 * kTopCurrent, 10 * kTopCurrent);
   int64_t reactive = 0;
   if (driving || currents.supply == Supply::Magnetizing)
-    reactive = std::clamp(currents.current_limit, 0, machine_.magnetizing_current);
+    reactive = std::clamp(currents.current_limit, 0, magnetizing_);
   if (currents.supply == Supply::DirectCurrent)
     reactive = std::clamp(currents.direct_current, 0, kTopCurrent);
   active_current_ = static_cast<int32_t>(active);

@@ -30,10 +30,12 @@ class PowerSection {
     return torque != 0 && torque >= torque_limit_;
   }
 
+  // What is left of the rated flux, 1/1000: the motor needs less magnetizing current, and more active current for a torque.
+  void set_flux(int32_t flux);
+
   // Torque of an active current, both in 1/1000 %.
   int64_t torque_of(int32_t active_current) const {
-    return int64_t{std::clamp(active_current, -kTopCurrent, kTopCurrent)} * 100'000 /
-           machine_.rated_active_current;
+    return int64_t{std::clamp(active_current, -kTopCurrent, kTopCurrent)} * 100'000 / active_;
   }
 
   struct Load {
@@ -153,7 +155,7 @@ class PowerSection {
   void find_currents(const Currents& currents);
   // Mechanical power in 1/1000 % of the rated power; losses are added, what comes back charges the DC link.
   void step_power() {
-    const int64_t change = std::clamp<int64_t>(power() + kStandby, -kMostPower, kMostPower) * kChargePerPower;
+    const int64_t change = std::clamp<int64_t>(power() + kStandby, -kMostPower, kMostPower) * charge_per_power_;
     const int64_t charge = std::clamp(charge_ - change, idle_charge_, most_charge_);
     if (charge != charge_) {
       charge_ = charge;
@@ -176,11 +178,19 @@ class PowerSection {
   static constexpr Ticks kMostAtOnce = 60'000;
   static constexpr int64_t kMostPower = 100'000'000;  // 1/1000 % of the rated power
   static constexpr int64_t kStandby = 1'000;          // always taken from the DC link
-  // Rated power lifts the square of the DC link voltage by 10000 V² a millisecond: about 200 µF a kilowatt.
+  // The unit's rated power lifts the square of the DC link voltage by 10000 V² a millisecond: about 200 µF a kilowatt.
   static constexpr int64_t kChargePerPower = 100'000;  // mV² per 1/1000 %
   static constexpr int64_t kPerWs = int64_t{100'000} * 1'000;
 
-  MachineData machine_;
+  struct Figures {  // of the machine
+    int32_t rated_speed, rated_slip, pole_pairs, rated_power, ambient, heat_sink_rise, rated_active, rated_magnetizing;
+    bool operator==(const Figures&) const = default;
+  };
+  Figures machine_;
+  int32_t flux_ = 1'000;
+  int32_t active_;       // at rated torque and this flux
+  int32_t magnetizing_;  // at this flux
+  int64_t charge_per_power_;
   int64_t continuous_heat_;  // 100 % of unit and motor utilization; the square of the current in 1/1000 %
   int64_t rated_heat_;
   int32_t limit_for_ = 0;

@@ -41,6 +41,13 @@ class Shaft {
   Motion turned(FineSpeed speed, int64_t torque, FineSpeed speed_limit, int64_t torque_limit,
                 const Resistance& resistance) const;
 
+  // Speed after a millisecond in which the motor pulls with `stiffness` (torque for a speed of 1) towards the speed
+  // `field`. The exponential of it is followed, not its tangent: any stiffness is stable.
+  FineSpeed pulled(FineSpeed speed, double field, double stiffness, const Resistance& resistance) const;
+  // The mean torque of the motor in a millisecond that brought the shaft from one speed to the other.
+  int64_t torque_between(FineSpeed before, FineSpeed after, const Resistance& resistance) const;
+  double gain() const { return static_cast<double>(gain_); }
+
   // Driven from outside: the torque that takes the inertia of this shaft to the setpoint, by a controller with a
   // proportional and an integral part. It is soft enough for a partner that answers a millisecond later.
   Motion controlled(FineSpeed speed, FineSpeed setpoint, int64_t torque_limit);

@@ -87,7 +87,7 @@ struct StationConfig {
   std::vector<ParameterSetting> parameters;
   std::vector<InputSetting> inputs;
   AnalogInputs analog;
-  MachineData machine;           // [station.load] on the default machine
+  MachineData machine;           // [station.motor], .unit_rating, .brake, .load; the rest is the default machine's
   std::optional<DrivenMachine> driven;  // [station.machine]
   std::vector<std::string> hex;  // variables the watch shows in hexadecimal
   FilePlace place;

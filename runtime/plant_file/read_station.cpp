@@ -120,32 +120,6 @@ void read_analog(PlantReader& reader, const toml::table& table, StationConfig& c
   }
 }
 
-// A value in % between two ends, kept in parts of `parts` to the percent.
-void read_percentage(PlantReader& reader, const toml::table& table, std::string_view key, int32_t least,
-                     int32_t most, int32_t parts, int32_t& out) {
-  const toml::node* node = table.get(key);
-  if (node == nullptr) return;
-  const std::optional<double> value = node->is_number() ? node->value<double>() : std::nullopt;
-  if (!value) return reader.error(place_of(*node), fmt::format("{} must be a number, in %", key));
-  if (!(*value >= least && *value <= most))
-    return reader.error(place_of(*node), fmt::format("{} is {} to {} %", key, least, most),
-                        AllowedValues{{}, least, most, "%"});
-  out = static_cast<int32_t>(std::lround(*value * parts));
-}
-
-void read_load(PlantReader& reader, const toml::table& table, MachineData& machine) {
-  const toml::table* settings = reader.subtable(table, "load");
-  if (settings == nullptr) return;
-  reader.known_keys(*settings, "[station.load]",
-                    {"inertia", "friction", "torque", "brake", "braking_resistor", "driven"});
-  read_percentage(reader, *settings, "inertia", 0, 100'000, 1, machine.inertia);
-  read_percentage(reader, *settings, "friction", 0, 1'000, 1'000, machine.friction);
-  read_percentage(reader, *settings, "torque", -1'000, 1'000, 1'000, machine.load_torque);
-  machine.brake = reader.flag(*settings, "brake").value_or(machine.brake);
-  machine.driven = reader.flag(*settings, "driven").value_or(machine.driven);
-  machine.braking_resistor = reader.flag(*settings, "braking_resistor").value_or(machine.braking_resistor);
-}
-
 void read_hex(PlantReader& reader, const toml::table& table, StationConfig& config) {
   const toml::node* node = table.get("hex");
   if (node == nullptr) return;
@@ -201,6 +175,11 @@ void read_station(PlantReader& reader, const toml::table& table) {
                      "parameters",
                      "inputs",
                      "analog",
+                     "motor",
+                     "unit_rating",
+                     "control",
+                     "noise",
+                     "brake",
                      "load",
                      "machine",
                      "hex",
@@ -241,7 +220,7 @@ void read_station(PlantReader& reader, const toml::table& table) {
   read_parameters(reader, table, config);
   read_inputs(reader, table, config);
   read_analog(reader, table, config);
-  read_load(reader, table, config.machine);
+  read_motor(reader, table, config);
   read_machine(reader, table, config);
   read_hex(reader, table, config);
   reader.result.plant.stations.push_back(std::move(config));

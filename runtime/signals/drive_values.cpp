@@ -76,6 +76,21 @@ constexpr DriveValue kLoadTorque = written(
 int64_t status_of(const Drive& drive) { return drive.status_word_1(); }
 int64_t fault_of(const Drive& drive) { return drive.fault(); }
 
+// H478 and H479 are the program's values for both outputs (IPOS OUTPUT).
+template <size_t output, bool current>
+constexpr DriveValue analog_output(std::string_view name) {
+  DriveValue row{name, "analog output", output == 0 ? "640" : "643"};
+  row.read = [](const Station& station) -> int64_t {
+    const int32_t ipos = station.config().unit->runs_programs() ? station.variable(static_cast<uint32_t>(478 + output)) : 0;
+    const AnalogLevel level = station.powered() ? station.drive().state().analog_output(output, ipos) : AnalogLevel{};
+    return current ? level.microampere : level.millivolt;
+  };
+  row.unit = current ? "mA" : "V";
+  row.factor = 0.001;
+  row.decimals = 3;
+  return row;
+}
+
 constexpr DriveValue kDriveValues[] = {
     {.name = "speed", .meaning = "P000", .parameter = "000", .decided = of_drive<&Drive::shown_speed>},
     {"frequency", "P002", "002"},
@@ -94,6 +109,10 @@ constexpr DriveValue kDriveValues[] = {
     {"torque", "of the motor as simulated", "", -1,
      [](const Station& station) -> int64_t { return station.powered() ? station.drive().state().axis().torque : 0; },
      "%Mn", 0.001, 3},
+    analog_output<0, false>("AO1"),
+    analog_output<0, true>("AO1_current"),
+    analog_output<1, false>("AO2"),
+    analog_output<1, true>("AO2_current"),
     {"position_setpoint", "H491", "", 491, nullptr, "inc"},
     {"position_target", "H492", "", 492, nullptr, "inc"},
     {"lag", "H495", "", 495, nullptr, "inc"},
@@ -102,7 +121,7 @@ constexpr DriveValue kDriveValues[] = {
 };
 
 bool has(const stdlib::UnitType& unit, const DriveValue& row) {
-  if (row.read != nullptr) return true;
+  if (row.read != nullptr) return row.parameter.empty() || find_parameter(unit, row.parameter) != nullptr;
   if (row.variable >= 0)
     return unit.has(stdlib::Trait::Positioning);
   return find_parameter(unit, row.parameter) != nullptr;

@@ -116,6 +116,7 @@ TEST(DrivePlots, AreMadeByIpos) {
   };
   is_drawn("ramp", "16s", "movidrive.speed,movidrive.status,movitrac.speed,movitrac.status");
   is_drawn("winder", "9s", "line.speed,takeup.speed,takeup.torque");
+  is_drawn("fan", "13s", "fan.setpoint,fan.speed,fan.current");
 }
 
 }  // namespace

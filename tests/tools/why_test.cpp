@@ -39,6 +39,17 @@ TEST(Why, NamesTheFaultFirst) {
       << silence;
 }
 
+TEST(Why, SaysOnceThatTheMotorIsIdeal) {
+  const std::string text = told("", kEnabled);
+  const size_t at = text.find("u1: note: the motor is ideal");
+  ASSERT_NE(at, std::string::npos) << text;
+  EXPECT_EQ(text.find("the motor is ideal", at + 20), std::string::npos) << text;
+  const TemporaryFolder folder;
+  const std::string plant = folder.write(
+      "p.toml", "[[station]]\nname = \"u1\"\nunit = \"md60a\"\n[station.motor]\ntype = \"DT90L4\"\n");
+  EXPECT_EQ(run_ipos({"run", plant, "--for", "10ms", "--why"}).err.find("the motor is ideal"), std::string::npos);
+}
+
 // By a program in its own unit; over buses: tests/runtime/bus_plan/plan_test.cpp and rs485/slave_test.cpp.
 TEST(Why, NamesARefusedWriteOfTheProgram) {
   const TemporaryFolder folder;

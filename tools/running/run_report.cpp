@@ -29,6 +29,10 @@ WatchChoice watch_choice(const std::string& flag) {
 }
 
 void print_journal(const runtime::Plant& plant, bool why) {
+  for (const auto& station : plant.stations())
+    if (why && !station->config().options.own_motor)
+      fmt::print(stderr, "{}: note: the motor is ideal: one of 1.5 kW that keeps every speed; [station.motor] and control = \"real\" describe another\n",
+                 station->config().name);
   for (const runtime::JournalEntry& entry : plant.journal().entries()) {
     if (entry.weight == runtime::Weight::Why && !why) continue;
     const char* weight = entry.weight == runtime::Weight::Fault     ? "fault"

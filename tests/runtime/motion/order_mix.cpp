@@ -34,6 +34,11 @@ AxisOrder draw_order(std::mt19937_64& random, Taste taste) {
   order.ramp.s_pattern = static_cast<uint8_t>(random() % 5);
   order.brake_function = random() % 4 != 0;
   order.premagnetize_ms = static_cast<uint16_t>(random() % 50);
+  order.control.encoder = random() % 2 == 0;
+  order.control.hoist = random() % 4 == 0;
+  order.control.dc_braking = random() % 4 == 0;
+  order.control.flying_start = random() % 2 == 0;
+  order.control.adjusted = random() % 2 == 0;
   order.brake_release_ms = static_cast<uint16_t>(random() % 50);
   order.brake_apply_ms = static_cast<uint16_t>(random() % 50);
   if (taste == Taste::Any) {
@@ -48,6 +53,9 @@ AxisOrder draw_order(std::mt19937_64& random, Taste taste) {
     order.current_limit = any(random);
     order.load_torque = any(random);
     order.standstill_current = any(random);
+    for (int32_t* figure : {&order.control.start_stop, &order.control.slip_compensation, &order.control.boost,
+                            &order.control.ixr, &order.control.gain, &order.control.time_us})
+      *figure = any(random);
     return order;
   }
   order.target = below(random, 6'000'001) - 3'000'000;
@@ -61,6 +69,11 @@ AxisOrder draw_order(std::mt19937_64& random, Taste taste) {
   order.current_limit = below(random, 150'001);
   order.load_torque = below(random, 40'001) - 20'000;
   order.standstill_current = below(random, 2) * 20'000;
+  order.control.start_stop = below(random, 150'001);
+  order.control.slip_compensation = below(random, 200'001);
+  order.control.ixr = below(random, 100'001);
+  order.control.gain = 100 + below(random, 31'901);
+  order.control.time_us = below(random, 100'001);
   return order;
 }
 
@@ -68,7 +81,20 @@ MachineData draw_machine(std::mt19937_64& random, Taste taste) {
   MachineData machine;
   machine.brake = random() % 2 == 0;
   machine.braking_resistor = random() % 2 == 0;
-  if (taste == Taste::Plausible) {
+  if (taste == Taste::Detailed || (taste == Taste::Any && random() % 2 == 0)) {
+    machine.real = random() % 4 != 0;
+    machine.load_shape = static_cast<runtime::LoadShape>(random() % 3);
+    machine.load_torque = below(random, 100'001) - 50'000;
+    machine.brake_release_ms = below(random, 200);
+    machine.brake_apply_ms = below(random, 200);
+    if (random() % 2 == 0) {
+      machine.second_inertia = 1e-4 * (1 + below(random, 1'000));
+      machine.stiffness = below(random, 1'000);
+      machine.damping = 1e-3 * below(random, 100);
+      machine.backlash = 1e-3 * below(random, 100);
+    }
+  }
+  if (taste != Taste::Any) {
     machine.inertia = below(random, 2'000);
     machine.friction = below(random, 20'000);
     return machine;
@@ -85,6 +111,15 @@ MachineData draw_machine(std::mt19937_64& random, Taste taste) {
                           &machine.inertia,
                           &machine.friction,
                           &machine.load_torque,
+                          &machine.load_turns,
+                          &machine.run_up_us,
+                          &machine.breakdown_torque,
+                          &machine.stator_drop,
+                          &machine.brake_release_ms,
+                          &machine.brake_apply_ms,
+                          &machine.unit_power,
+                          &machine.unit_current,
+                          &machine.noise,
                           &machine.brake_torque,
                           &machine.dc_link,
                           &machine.chopper_level,
@@ -94,6 +129,8 @@ MachineData draw_machine(std::mt19937_64& random, Taste taste) {
                           &machine.heat_sink_rise,
                           &machine.heat_sink_time_ms})
     *figure = any(random);
+  for (double* figure : {&machine.second_inertia, &machine.stiffness, &machine.damping, &machine.backlash})
+    if (random() % 2 == 0) *figure = any(random) * (random() % 2 == 0 ? 1e-6 : 1.0);
   return machine;
 }
 

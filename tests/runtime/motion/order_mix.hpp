@@ -9,7 +9,8 @@
 
 namespace ipos::tests {
 
-enum class Taste : uint8_t { Plausible, Any };
+// Detailed: plausible, with real control, loads by speed and place, brake times and a second mass.
+enum class Taste : uint8_t { Plausible, Any, Detailed };
 
 // Distributions of the standard library differ between vendors; the bits of the generator do not.
 runtime::AxisOrder draw_order(std::mt19937_64& random, Taste taste);

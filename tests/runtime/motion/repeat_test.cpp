@@ -21,7 +21,7 @@ std::string output_of(const char* program) {
 }
 
 TEST(MotionRepeats, SameSeedSameHash) {
-  for (const Taste taste : {Taste::Plausible, Taste::Any}) {
+  for (const Taste taste : {Taste::Plausible, Taste::Any, Taste::Detailed}) {
     EXPECT_EQ(hash_of_run(7, 50'000, taste), hash_of_run(7, 50'000, taste));
     EXPECT_NE(hash_of_run(7, 50'000, taste), hash_of_run(8, 50'000, taste));
   }
@@ -29,20 +29,22 @@ TEST(MotionRepeats, SameSeedSameHash) {
 
 TEST(MotionRepeats, OptimizerChangesNothing) {
   const std::string plain = output_of(IPOS_HASH_O0);
-  EXPECT_EQ(plain.size(), 6 * 17U) << plain;
+  EXPECT_EQ(plain.size(), 9 * 17U) << plain;
   EXPECT_EQ(plain, output_of(IPOS_HASH_O2));
 }
 
 TEST(MotionRepeats, SnapshotGoesOnAlike) {
-  std::mt19937_64 random(3);
-  runtime::Axis axis(draw_machine(random, Taste::Plausible));
-  for (int round = 0; round < 200; ++round) {
-    const runtime::AxisOrder order = draw_order(random, Taste::Plausible);
-    for (int ms = 0; ms < 50; ++ms) axis.tick(order);
-    runtime::Axis copy = axis;
-    const runtime::AxisOrder next = draw_order(random, Taste::Plausible);
-    for (int ms = 0; ms < 50; ++ms)
-      ASSERT_EQ(add_to_hash(0, axis.tick(next)), add_to_hash(0, copy.tick(next))) << round << " " << ms;
+  for (const Taste taste : {Taste::Plausible, Taste::Detailed}) {
+    std::mt19937_64 random(3);
+    runtime::Axis axis(draw_machine(random, taste));
+    for (int round = 0; round < 200; ++round) {
+      const runtime::AxisOrder order = draw_order(random, Taste::Plausible);
+      for (int ms = 0; ms < 50; ++ms) axis.tick(order);
+      runtime::Axis copy = axis;
+      const runtime::AxisOrder next = draw_order(random, Taste::Plausible);
+      for (int ms = 0; ms < 50; ++ms)
+        ASSERT_EQ(add_to_hash(0, axis.tick(next)), add_to_hash(0, copy.tick(next))) << round << " " << ms;
+    }
   }
 }
 

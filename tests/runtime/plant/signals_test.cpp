@@ -143,7 +143,8 @@ TEST_F(Signals, WhatAStationHasIsTold) {
   EXPECT_EQ(
       found.error(),
       "station 'u' has no signal 'sped'; it has speed, frequency, position, current, active_current, "
-      "motor_utilization, dc_link, temperature, setpoint, shaft_speed, shaft_angle, load_torque, torque, position_setpoint, "
+      "motor_utilization, dc_link, temperature, setpoint, shaft_speed, shaft_angle, load_torque, torque, AO1, "
+      "AO1_current, AO2, AO2_current, position_setpoint, "
       "position_target, lag, status, fault, parameters as P000, inputs as DI00 and AI1, outputs as DO01, "
       "process data as PO1 and PI1, bits as PO1.6, states as " +
           state_names() +

@@ -95,7 +95,8 @@ TEST(Unsimulated, EveryWritableParameterIsReadOrNamed) {
       ++looked;
       const auto rows = stdlib::unsimulated(type, parameter->index);
       const bool named = std::any_of(rows.begin(), rows.end(), [&](const Unsimulated& one) {
-        return one.parameter == parameter && one.values.empty();
+        return one.parameter == parameter && one.values.empty() &&
+               one.row->scope != stdlib::UnsimulatedScope::Ideal;  // read, and told without control = "real"
       });
       EXPECT_NE(is_read(type, *parameter) && !((type.name == "compact" &&
                                                 (parameter->number == "819" || parameter->number == "831")) ||
@@ -122,6 +123,31 @@ TEST(Unsimulated, RowsFitTheLists) {
               << type.name << " P" << one.parameter->number << " = " << value;
     }
   EXPECT_EQ(used.size(), stdlib::unsimulated_rows().size());
+}
+
+// What only ideal control leaves out is told without control = "real" alone.
+TEST(Unsimulated, OfIdealControlIsToldThereOnly) {
+  size_t rows = 0;
+  for (const stdlib::UnsimulatedRow& row : stdlib::unsimulated_rows()) rows += row.scope == stdlib::UnsimulatedScope::Ideal;
+  EXPECT_GT(rows, 5U);
+  DriveOptions real;
+  real.real_control = true;
+  for (const stdlib::UnitType& type : stdlib::unit_types())
+    for (const Unsimulated& one : stdlib::unsimulated(type)) {
+      for (const int64_t value : other_values(*one.parameter)) {
+        if (!one.applies(static_cast<int32_t>(value))) continue;
+        UnitInterface ideal_unit(type), real_unit(type, {}, real);
+        for (UnitInterface* unit : {&ideal_unit, &real_unit})
+          if (!unit->parameters().preset(one.parameter->index, static_cast<int32_t>(value))) continue;
+        const auto tells = [&](UnitInterface& unit) {
+          const std::vector<std::string> told = unit.parameters().tell_settings();
+          return std::find(told.begin(), told.end(), one.text(static_cast<int32_t>(value))) != told.end();
+        };
+        EXPECT_TRUE(tells(ideal_unit)) << one.text(static_cast<int32_t>(value));
+        EXPECT_EQ(tells(real_unit), one.row->scope != stdlib::UnsimulatedScope::Ideal) << one.text(static_cast<int32_t>(value));
+        break;
+      }
+    }
 }
 
 // The factory setting says nothing; a setting and a write say it once each reason.
