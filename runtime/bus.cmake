@@ -2,15 +2,18 @@
 
 ipos_layer(clock FOLDERS runtime/clock SOURCES clock/event_queue.cpp)
 
-# bus_layer(NAME [BATCH n] SOURCES file... HOT file... USES layer...): a folder of runtime/bus.
+# bus_layer(NAME [FOLDER folder] [BATCH n] SOURCES file... HOT file... USES layer...): a folder of runtime/bus.
 function(bus_layer name)
-  cmake_parse_arguments(BUS "" "BATCH" "SOURCES;HOT;USES" ${ARGN})
+  cmake_parse_arguments(BUS "" "BATCH;FOLDER" "SOURCES;HOT;USES" ${ARGN})
   if(NOT BUS_BATCH)
     set(BUS_BATCH 40)
   endif()
-  list(TRANSFORM BUS_SOURCES PREPEND bus/${name}/)
-  list(TRANSFORM BUS_HOT PREPEND bus/${name}/)
-  ipos_layer(bus_${name} FOLDERS runtime/bus/${name} SOURCES ${BUS_SOURCES} ${BUS_HOT} USES ${BUS_USES} LIBS fmt::fmt)
+  if(NOT BUS_FOLDER)
+    set(BUS_FOLDER ${name})
+  endif()
+  list(TRANSFORM BUS_SOURCES PREPEND bus/${BUS_FOLDER}/)
+  list(TRANSFORM BUS_HOT PREPEND bus/${BUS_FOLDER}/)
+  ipos_layer(bus_${name} FOLDERS runtime/bus/${BUS_FOLDER} SOURCES ${BUS_SOURCES} ${BUS_HOT} USES ${BUS_USES} LIBS fmt::fmt)
   ipos_batches(ipos_bus_${name} SIZE ${BUS_BATCH} HOT ${BUS_HOT})
 endfunction()
 
@@ -32,11 +35,14 @@ bus_layer(canopen
   SOURCES abort.cpp object_dictionary.cpp object_access.cpp eds.cpp sdo_server.cpp pdo.cpp emergency.cpp error_control.cpp
           node.cpp sdo_client.cpp master.cpp sdo_master.cpp dbc_messages.cpp words.cpp sdo_words.cpp
   USES bus_can bus_movilink clock stdlib)
+bus_layer(profibus_fms FOLDER profibus/fms
+  SOURCES connection.cpp pdu.cpp messages.cpp server.cpp slave_links.cpp client_link.cpp
+  USES bus_movilink clock stdlib)
 bus_layer(profibus
   SOURCES fdl_frame.cpp fdl_receiver.cpp dp_service.cpp cfg_data.cpp frame_text.cpp dp_slave.cpp card.cpp line_fault.cpp
           line.cpp slave_station.cpp slave_handler.cpp master.cpp fieldbus_parameters.cpp dp_unit.cpp gsd.cpp line_plan.cpp
-          interface_card.cpp fms_connection.cpp fms_objects.cpp fms_server.cpp
-  USES bus_line bus_rs485 bus_movilink clock stdlib)
+          interface_card.cpp fms_objects.cpp fms_partner.cpp
+  USES bus_profibus_fms bus_line bus_rs485 bus_movilink clock stdlib)
 # Telegrams of all lines as words, as logs, and as a DBC file.
 bus_layer(words SOURCES can_words.cpp dp_words.cpp bus_words.cpp USES bus_can bus_movilink bus_canopen bus_profibus)
 bus_layer(log
@@ -44,4 +50,5 @@ bus_layer(log
   HOT read_serial_log.cpp  # alone: its names are those of candump.cpp
   USES bus_can bus_rs485 bus_movilink bus_profibus clock)
 bus_layer(dbc SOURCES dbc.cpp USES bus_words bus_log bus_canopen bus_movilink bus_can stdlib)
-ipos_layer(bus USES bus_line bus_can bus_rs485 bus_movilink bus_canopen bus_profibus bus_words bus_log bus_dbc)  # all of them
+ipos_layer(bus USES bus_line bus_can bus_rs485 bus_movilink bus_canopen bus_profibus_fms bus_profibus bus_words bus_log
+           bus_dbc)  # all of them

@@ -31,6 +31,7 @@ constexpr VerbRow kVerbs[] = {
     IPOS_VERB("Buses and drives", scan, unit),
     IPOS_VERB("Buses and drives", scope, unit),
     IPOS_VERB("Buses and drives", diag, unit),
+    IPOS_VERB("Buses and drives", fms, unit),
     IPOS_VERB("Buses and drives", canopen, bus),
     IPOS_VERB("Buses and drives", profibus, bus),
     IPOS_VERB("Images", asm, build),

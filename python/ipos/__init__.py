@@ -9,6 +9,7 @@
 
 from ._library import ClosedError, Mistake, PlantError, QueueFullError, RefusedError, ThreadError, version
 from .bus import Bus, Frame, Telegram
+from .fms import Fms, FmsError
 from .plant import JournalEntry, Plant
 from .station import AnalogValue, ParameterValue, Station
 
@@ -17,6 +18,8 @@ __all__ = [
     "AnalogValue",
     "Bus",
     "ClosedError",
+    "Fms",
+    "FmsError",
     "Frame",
     "JournalEntry",
     "Mistake",

@@ -121,6 +121,10 @@ class TelegramRow(Structure):
     ]
 
 
+class FmsAnswer(Structure):
+    _fields_ = [("end", c_int32), ("code", c_uint32), ("data", POINTER(c_uint8)), ("length", c_size_t), ("text", c_char_p)]
+
+
 class Entry(Structure):
     _fields_ = [("time", c_int64), ("weight", c_int32), ("station", c_char_p), ("text", c_char_p)]
 
@@ -165,6 +169,7 @@ _FUNCTIONS = {
     "node_name": [c_void_p, c_uint32, c_uint32, POINTER(c_char_p)],
     "serial_send": [c_void_p, c_uint32, c_char_p, c_size_t],
     "serial_receive": [c_void_p, c_uint32, POINTER(TelegramRow)],
+    "fms": [c_void_p, c_uint32, c_uint8, c_uint8, c_char_p, c_uint16, c_char_p, c_size_t, c_int64, POINTER(FmsAnswer)],
     "line_fault": [c_void_p, c_char_p],
     "parameter_index": [c_char_p, c_char_p, POINTER(c_uint16)],
     "parameter_text": [c_char_p, c_uint16, c_int32, c_char_p, c_size_t],

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from . import _library as lib
 from ._signals import SignalOwner
+from .fms import Fms
 
 if TYPE_CHECKING:
     from .plant import Plant
@@ -94,6 +95,12 @@ class Bus(SignalOwner):
         tag = c_uint32()
         self._plant._call("send", self._number, byref(row), byref(tag))
         return tag.value
+
+    def fms(self, address: int, *, connection: int = 7, limit: str | float = "10s") -> Fms:
+        """Services of PROFIBUS-FMS of the station at an address, with a master that joins the ring: bus.fms(8).read(1025)."""
+        if self.kind != "profibus":
+            raise TypeError(f"FMS is on PROFIBUS lines, {self.name} is {self.kind}")
+        return Fms(self, address, connection, limit)
 
     def to_pandas(self) -> object:
         """What frames() gives as a pandas.DataFrame, a row a frame or telegram."""

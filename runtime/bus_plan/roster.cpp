@@ -27,7 +27,8 @@ const ControlSettings* movilink_of(const Member& member) {
       *member.control, [](MovilinkControl& control) { return &control.control().settings(); },
       [](Gateway& gateway) { return &gateway.settings(); },
       [](CanopenControl&) -> const ControlSettings* { return nullptr; },
-      [](ProfibusControl&) -> const ControlSettings* { return nullptr; });
+      [](ProfibusControl&) -> const ControlSettings* { return nullptr; },
+      [](FmsControl&) -> const ControlSettings* { return nullptr; });
 }
 
 const canopen::MasterSettings* canopen_of(const Member& member) {

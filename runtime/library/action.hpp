@@ -31,8 +31,9 @@ enum class Act : uint8_t {
   NodeRate,      // number: bus; value: bit/s
   NodeState,     // number: bus; value: runtime::ErrorState
   NodeDiscards,  // number: bus; value: 1: what loses the arbitration is given up
+  Fms,         // number: bus; bytes: address, connection, service, index high and low, data
 };
-inline constexpr Act kLastAct = Act::NodeDiscards;
+inline constexpr Act kLastAct = Act::Fms;
 
 struct Action {
   runtime::Time at = 0;

@@ -213,6 +213,38 @@ ipos_plant_status ipos_plant_serial_receive(ipos_plant* plant, uint32_t bus, ipo
   });
 }
 
+ipos_plant_status ipos_plant_fms(ipos_plant* plant, uint32_t bus, uint8_t address, uint8_t connection, const char* service,
+                                 uint16_t index, const uint8_t* data, size_t length, int64_t until,
+                                 ipos_plant_fms_answer* answer) {
+  namespace fms = ipos::profibus::fms;
+  return enter(plant, Allowed::NotInCallbacks, [=](Session& session) -> ipos_plant_status {
+    if (service == nullptr || answer == nullptr || (data == nullptr && length != 0)) return IPOS_PLANT_INVALID_ARGUMENT;
+    const auto wanted = fms::service_of_key(service);
+    constexpr size_t kLongest = 230;  // of the objects
+    if (!wanted || length > kLongest || address > ipos::profibus::kLastStation || fms::find_connection(connection) == nullptr)
+      return plant->fail(IPOS_PLANT_BAD_VALUE,
+                         fmt::format("a service of FMS is {}, over connection 2 to 8 to an address of 0 to 125, and carries at most {} "
+                                     "octets",
+                                     fms::service_keys(), kLongest));
+    ipos::runtime::Plant& running = session.plant();
+    if (until < running.now() || until == ipos::runtime::kNever)
+      return plant->fail(IPOS_PLANT_INVALID_ARGUMENT, fmt::format("it is {} ns: time does not run back", running.now()));
+    if (session.instance().fms(bus) == nullptr) return no_bus(plant, fmt::format("no PROFIBUS line has number {}", bus));
+    std::vector<uint8_t> bytes{address, connection, static_cast<uint8_t>(*wanted), static_cast<uint8_t>(index >> 8),
+                               static_cast<uint8_t>(index)};
+    bytes.insert(bytes.end(), data, data + length);
+    if (const auto status = perform(plant, session, Act::Fms, bus, 0, std::move(bytes)); status != IPOS_PLANT_OK) return status;
+    std::optional<fms::Done> done;
+    while (!(done = session.instance().fms(bus)->take()) && running.now() < until)
+      running.run_until(std::min(until, running.now() + ipos::runtime::kMillisecond));
+    if (!done) return IPOS_PLANT_NOTHING;
+    plant->bytes = done->response.data;
+    *answer = {static_cast<ipos_plant_fms_end>(done->response.end), done->response.error.packed(), plant->bytes.data(),
+               plant->bytes.size(), plant->hand_out(fms::describe(done->response))};
+    return IPOS_PLANT_OK;
+  });
+}
+
 ipos_plant_status ipos_plant_line_fault(ipos_plant* plant, const char* text) {
   return enter(plant, Allowed::NotInCallbacks, [=](Session& session) {
     if (text == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};

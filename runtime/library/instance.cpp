@@ -7,11 +7,14 @@
 #include <string_view>
 #include <utility>
 
+#include "runtime/station/dp_slaves.hpp"
+
 namespace ipos::library {
 namespace {
 
 const std::string_view kStrange = "this plant has nothing of the kind";
 
+constexpr size_t kFmsHead = 5;    // address, connection, service, index
 constexpr size_t kFrameHead = 6;  // identifier, extended and remote, length
 
 }  // namespace
@@ -99,6 +102,30 @@ Refusal Instance::tell_node(const Action& action) {
   return std::nullopt;
 }
 
+runtime::FmsOperator* Instance::fms(uint32_t line) {
+  runtime::FmsOperator* found = nullptr;
+  with_line(line, [&](auto& tap) {
+    if (auto* const bus = runtime::as<runtime::ProfibusBus>(plant_->find_bus(tap.line().name())))
+      found = &runtime::fms_operator_of(*plant_, *bus);
+  });
+  return found;
+}
+
+// Answers to what was asked before and was not taken are gone.
+Refusal Instance::ask_fms(const Action& action) {
+  namespace fms = profibus::fms;
+  const std::span<const uint8_t> bytes = action.bytes;
+  if (bytes.size() < kFmsHead || bytes[2] >= fms::service_types().size()) return std::string(kStrange);
+  const fms::Connection* connection = fms::find_connection(bytes[1]);
+  runtime::FmsOperator* const hand = this->fms(action.number);
+  if (connection == nullptr || hand == nullptr) return std::string(kStrange);
+  while (hand->take()) continue;
+  const std::span<const uint8_t> data = bytes.subspan(kFmsHead);
+  hand->ask(bytes[0], *connection,
+            {static_cast<fms::Service>(bytes[2]), static_cast<uint16_t>(bytes[3] << 8 | bytes[4]), {data.begin(), data.end()}});
+  return std::nullopt;
+}
+
 Refusal Instance::plant_faults(const Action& action) {
   const std::string text(action.bytes.begin(), action.bytes.end());
   runtime::PlantFileResult read = runtime::read_fault_tables(text, plant_->file());
@@ -124,6 +151,7 @@ Refusal Instance::perform(const Action& action) {
     case Act::NodeRate:
     case Act::NodeState:
     case Act::NodeDiscards: return tell_node(action);
+    case Act::Fms: return ask_fms(action);
     default: break;
   }
   if (const runtime::Gateway* gateway = gateway_of(*plant_, action.signal.station)) {

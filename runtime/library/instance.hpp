@@ -21,6 +21,9 @@ class Instance {
   // Writes a signal of this plant.
   Refusal set(const signals::Signal& signal, int64_t value) { return actions_.set(signal, value); }
 
+  // Who speaks FMS on the line; null: it is no PROFIBUS.
+  runtime::FmsOperator* fms(uint32_t line);
+
   runtime::Plant& plant() { return *plant_; }
   const runtime::Plant& plant() const { return *plant_; }
   std::vector<std::unique_ptr<CanTap>>& can() { return can_; }
@@ -45,6 +48,7 @@ class Instance {
   Refusal send(const Action& action);
   Refusal tell_node(const Action& action);
   Refusal plant_faults(const Action& action);
+  Refusal ask_fms(const Action& action);
 
   std::unique_ptr<runtime::Plant> plant_;
   runtime::PlantActions actions_;

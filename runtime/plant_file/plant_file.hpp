@@ -38,6 +38,9 @@ struct BusConfig {
   uint32_t length_mm = 0;
   uint32_t impedance = 0;    // ohm
   uint32_t capacitance = 0;  // pF/m
+  double loop_resistance = 0;  // ohm/km, of PROFIBUS as the next two
+  double core_diameter = 0;    // mm
+  double core_section = 0;     // mm2
   bool shielded = false;
   bool terminated = false;  // external terminating resistors
 };
@@ -107,11 +110,11 @@ struct GatewayConfig {
 };
 
 // What sends without being a station with a drive. A master control on an SBus: process data to units, and the sync
-// telegram; or a master of CANopen, or one on a PROFIBUS, or a gateway. Each has a class in runtime/station/control.hpp.
+// telegram; or a master of CANopen, or one of DP or FMS on a PROFIBUS, or a gateway. Each has a class in runtime/station/control.hpp.
 struct ControlConfig {
   std::string name;
   std::string sbus;  // empty: only on a PROFIBUS
-  std::variant<ControlSettings, canopen::MasterSettings, ProfibusMasterConfig, GatewayConfig> kind{};
+  std::variant<ControlSettings, canopen::MasterSettings, ProfibusMasterConfig, FmsMasterConfig, GatewayConfig> kind{};
   std::optional<bool> terminator;
   FilePlace place;
 

@@ -177,6 +177,14 @@ bool PlantReader::signal(const toml::table& table, std::string_view what,
   } else if (found == "state") {
     out.kind = SignalKind::State;
     bit = find_state(out.name);
+  } else if (found == "switch") {
+    out.kind = SignalKind::Switch;
+    if (find_switch(out.name) == nullptr) {
+      std::vector<std::string_view> words;
+      for (const StationSwitchType& type : station_switches()) words.push_back(type.word);
+      error(place_of(*table.get(found)), fmt::format("'{}' is no switch; known are {}", out.name, fmt::join(words, ", ")));
+      return false;
+    }
   } else {
     out.kind = SignalKind::Input;
     bit = parse_analog_input(out.name);

@@ -129,6 +129,7 @@ void read_barrier(PlantReader& reader, const toml::table& table, LightBarrier ba
 void read_profibus_card(PlantReader& reader, const toml::table& table, StationConfig& config);
 void read_profibus_fault(PlantReader& reader, const toml::table& table);
 void read_profibus_master(PlantReader& reader, const toml::table& table, ControlConfig& control);
+void read_fms_master(PlantReader& reader, const toml::table& table, ControlConfig& control);
 void read_controls(PlantReader& reader, const toml::table& root);
 // Of a [[control]] with kind = "canopen", all but what every control has.
 canopen::MasterSettings read_canopen_master(PlantReader& reader, const toml::table& table);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/bus/profibus/fms/service.hpp"
 #include "runtime/bus/profibus/master.hpp"
 #include "runtime/plant_file/toml_text.hpp"
 
@@ -27,6 +28,7 @@ struct ProfibusUse {
   FilePlace option_place;
   BusUse bus;
   uint8_t address = profibus::kNoAddressYet;  // of the switches on the card
+  bool fms_switch = false;                    // FMS/DP of a combislave, else DP
   std::optional<bool> terminator{};           // the one of the card, for `ipos bus plan` and the journal
 };
 
@@ -51,6 +53,25 @@ struct ProfibusMasterConfig {
   std::vector<profibus::SlavePlan> slaves;
   std::vector<ProfibusOutput> outputs;
   std::vector<ProfibusOrder> orders;
+};
+
+// A master of FMS: which connections of which slaves it has, and what it asks when.
+struct FmsMasterConfig {
+  struct Link {
+    uint8_t address = 0;
+    const profibus::fms::Connection* connection = nullptr;
+    profibus::fms::MasterEntry entry;
+  };
+  struct Request {
+    size_t link = 0;  // in the order of the file
+    Time at = 0;
+    Time every = 0;  // 0: once
+    profibus::fms::Request request;
+  };
+  std::string bus;
+  profibus::MasterSettings settings;
+  std::vector<Link> links;
+  std::vector<Request> requests;
 };
 
 }  // namespace ipos::runtime

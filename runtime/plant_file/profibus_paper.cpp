@@ -74,11 +74,19 @@ profibus::LinePlan profibus_paper(const PlantFile& file, const BusConfig& bus) {
   paper.cable.metres = bus.length_mm / 1000.0;
   if (bus.impedance != 0) paper.cable.ohms = bus.impedance;
   if (bus.capacitance != 0) paper.cable.picofarads_a_metre = bus.capacitance;
+  if (bus.loop_resistance != 0) paper.cable.ohms_a_kilometre = bus.loop_resistance;
+  if (bus.core_diameter != 0) paper.cable.diameter = bus.core_diameter;
+  if (bus.core_section != 0) paper.cable.section = bus.core_section;
   const auto masters = masters_of(file, bus.name);
-  if (!masters.empty()) {
+  std::vector<const profibus::MasterSettings*> all;
+  for (const ProfibusMasterConfig* master : masters) all.push_back(&master->settings);
+  for (const ControlConfig& control : file.controls)
+    if (const auto* master = control.as<FmsMasterConfig>(); master != nullptr && master->bus == bus.name)
+      all.push_back(&master->settings);
+  if (!all.empty()) {
     paper.masters.clear();
-    for (const ProfibusMasterConfig* master : masters) paper.masters.push_back(master->settings.address);
-    paper.gap_poll = masters[0]->settings.gap_factor != 0;
+    for (const profibus::MasterSettings* master : all) paper.masters.push_back(master->address);
+    paper.gap_poll = all[0]->gap_factor != 0;
   }
   const std::vector<Slave> slaves = slaves_of(file, bus.name);
   // Where the file says nothing of terminators, they are where they belong.
@@ -95,6 +103,12 @@ profibus::LinePlan profibus_paper(const PlantFile& file, const BusConfig& bus) {
 std::vector<std::string> profibus_master_findings(const PlantFile& file, const BusConfig& bus) {
   std::vector<std::string> found;
   const std::vector<Slave> slaves = slaves_of(file, bus.name);
+  for (const ControlConfig& control : file.controls)
+    if (const auto* fms = control.as<FmsMasterConfig>(); fms != nullptr && fms->bus == bus.name)
+      for (const FmsMasterConfig::Link& link : fms->links)
+        for (const std::string& broken : profibus::fms::check_master_entry(link.entry, *link.connection))
+          found.push_back(fmt::format("{}: its entry does not fit connection {} of slave {}: {}", control.name,
+                                      link.connection->cref, link.address, broken));
   std::map<uint8_t, uint8_t> first;  // master of a slave's address
   for (const ProfibusMasterConfig* master : masters_of(file, bus.name))
     for (const profibus::SlavePlan& plan : master->slaves) {

@@ -49,6 +49,18 @@ void read_wiring(PlantReader& reader, const toml::table& table, BusConfig& confi
   config.terminated = reader.flag(table, "terminated").value_or(false);
   config.impedance = reader.count(table, "impedance", 1000, 0);
   config.capacitance = reader.count(table, "capacitance", 1000, 0);
+  for (const auto& [key, out] : {std::pair("loop_resistance", &config.loop_resistance), std::pair("core_diameter", &config.core_diameter),
+                                 std::pair("core_section", &config.core_section)}) {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) continue;
+    const auto value = node->value<double>();
+    if (!value || !(*value > 0) || *value > 1000)
+      reader.error(place_of(*node), fmt::format("{} is a number above 0", key));
+    else if (config.kind != BusKind::Profibus)
+      reader.error(place_of(*node), fmt::format("{} is of the cable of a PROFIBUS line", key));
+    else
+      *out = *value;
+  }
   const toml::node* length = table.get("length");
   if (length == nullptr) return;
   const auto metres = length->value<double>();
@@ -69,7 +81,8 @@ void read_port(PlantReader& reader, const toml::table& table, BusConfig& config)
 void read_bus(PlantReader& reader, const toml::table& table) {
   reader.known_keys(
       table, "[[bus]]",
-      {"name", "kind", "baud", "port", "length", "impedance", "capacitance", "shielded", "terminated"});
+      {"name", "kind", "baud", "port", "length", "impedance", "capacitance", "loop_resistance", "core_diameter",
+       "core_section", "shielded", "terminated"});
   BusConfig config;
   config.place = place_of(table);
   config.name = reader.text(table, "name", "a [[bus]]", true);

@@ -60,10 +60,12 @@ void read_control(PlantReader& reader, const toml::table& table) {
   config.name = reader.text(table, "name", "a [[control]]", true);
   reader.new_station(config.name, config.place);
   const std::string kind = reader.text(table, "kind", "", false);
-  if (!kind.empty() && kind != "canopen" && kind != "sbus")
+  if (!kind.empty() && kind != "canopen" && kind != "sbus" && kind != "fms")
     reader.error(place_of(*table.get("kind")),
-                 fmt::format("'{}' is no kind of control; known are sbus, canopen", kind));
-  if (table.contains("profibus")) {
+                 fmt::format("'{}' is no kind of control; known are sbus, canopen, fms", kind));
+  if (kind == "fms") {
+    read_fms_master(reader, table, config);
+  } else if (table.contains("profibus")) {
     read_profibus_master(reader, table, config);
   } else if (kind == "canopen") {
     config.sbus = reader.bus_name(table, "sbus", "a [[control]]", true);

@@ -78,6 +78,12 @@ bool find_factors(Time watchdog, profibus::PrmData& prm) {
   return false;
 }
 
+std::string fault_words() {
+  std::vector<std::string_view> words;
+  for (const profibus::LineFaultType& type : profibus::line_fault_types()) words.push_back(type.word);
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
 class MasterReader {
  public:
   MasterReader(PlantReader& reader, ProfibusMasterConfig& config) : reader_(reader), config_(config) {}
@@ -215,6 +221,9 @@ void read_profibus_card(PlantReader& reader, const toml::table& table, StationCo
       reader.error(place_of(*address), "profibus_address needs profibus = \"...\"");
     return;
   }
+  use.fms_switch = reader.flag(table, "fms_switch").value_or(false);
+  if (table.contains("fms_switch") && use.option != nullptr && !use.option->fms)
+    reader.error(place_of(*table.get("fms_switch")), fmt::format("{} has no FMS/DP switch", use.option->model));
   if (!table.contains("option"))
     reader.error(use.bus.place, "profibus needs option = \"...\", the card that is fitted");
   if (!table.contains("profibus_address"))
@@ -235,8 +244,13 @@ void read_profibus_fault(PlantReader& reader, const toml::table& table) {
   else if (!word.empty())
     reader.error(
         place_of(*table.get("kind")),
-        fmt::format("'{}' is no fault of a PROFIBUS line; known are lost, cut, parity, noise, collision",
-                    word));
+        fmt::format("'{}' is no fault of a PROFIBUS line; known are {}", word, fault_words()));
+  const bool of_station = profibus::line_fault_type(fault.kind).scope == profibus::LineFaultScope::Station;
+  if (of_station && config.station.empty())
+    reader.error(config.place, fmt::format("a fault '{}' needs station = \"...\"", word));
+  for (const char* key : {"frame", "rate", "seed"})
+    if (const toml::node* node = table.get(key); node != nullptr && of_station)
+      reader.error(place_of(*node), fmt::format("{} does not belong to a fault '{}'", key, word));
   const bool counted = table.contains("frame");  // a wrong number is told once, and then goes as the first
   fault.frame = reader.count(table, "frame", INT32_MAX, counted ? 1 : 0);
   fault.per_mille = reader.count(table, "rate", 1000, 1000);

@@ -171,6 +171,7 @@ void read_station(PlantReader& reader, const toml::table& table) {
                      "option",
                      "profibus",
                      "profibus_address",
+                     "fms_switch",
                      "nvram",
                      "parameters",
                      "inputs",

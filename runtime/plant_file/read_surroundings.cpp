@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "runtime/plant_file/plant_reader.hpp"
+#include "runtime/plant_file/state_names.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -20,6 +21,14 @@ bool read_value(PlantReader& reader, const toml::node& node, std::string_view ke
   Signal& signal = stimulus.signal;
   if (signal.kind == SignalKind::Parameter)
     return reader.parameter_value(node, reader.unit_of(signal.station), signal.name, stimulus.value);
+  if (signal.kind == SignalKind::Switch) {
+    if (!node.is_boolean() && !reader.number(node, key, stimulus.value)) return false;
+    if (node.is_boolean()) stimulus.value = node.as_boolean()->get() ? 1 : 0;
+    const int32_t most = find_switch(signal.name)->most;
+    if (stimulus.value >= 0 && stimulus.value <= most) return true;
+    reader.error(place_of(node), fmt::format("{} is 0 to {}", signal.name, most));
+    return false;
+  }
   if (signal.kind != SignalKind::Input) return reader.number(node, key, stimulus.value);
   if (signal.line >= kBinaryLines) {
     const auto setting = parse_analog(signal.name, node.value_or(std::string()));
@@ -53,6 +62,8 @@ void read_action(PlantReader& reader, const toml::table& table, std::string_view
   if (found == nullptr)
     return reader.error(stimulus.place, fmt::format("{} needs set, force, pulse or release", what));
   stimulus.action = found->action;
+  if (stimulus.signal.kind == SignalKind::Switch && found->action != Stimulus::Action::Set)
+    return reader.error(place_of(*table.get(found->key)), "a switch stays as it is turned: write set");
   const toml::node& node = *table.get(found->key);
   if (found->action == Stimulus::Action::Release) {
     if (!reader.flag(table, "release").value_or(false)) reader.error(place_of(node), "write release = true");
@@ -85,7 +96,7 @@ void read_times(PlantReader& reader, const toml::table& table, std::string_view 
 void read_stimuli(PlantReader& reader, const toml::table& table) {
   constexpr std::string_view kWhat = "a [[stimulus]]";
   reader.known_keys(table, "[[stimulus]]",
-                    {"station", "at", "variable", "parameter", "input", "analog", "set", "force", "pulse",
+                    {"station", "at", "variable", "parameter", "input", "analog", "switch", "set", "force", "pulse",
                      "release", "for", "every", "times"});
   Stimulus stimulus;
   stimulus.place = place_of(table);
@@ -206,7 +217,7 @@ void check_drivers(PlantReader& reader) {
 }  // namespace
 
 bool read_stimulus(PlantReader& reader, const toml::table& table, std::string_view what, Stimulus& stimulus) {
-  if (!reader.signal(table, what, {"variable", "parameter", "input", "analog"}, stimulus.signal))
+  if (!reader.signal(table, what, {"variable", "parameter", "input", "analog", "switch"}, stimulus.signal))
     return false;
   read_action(reader, table, what, stimulus);
   read_times(reader, table, what, stimulus);

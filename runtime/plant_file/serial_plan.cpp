@@ -210,7 +210,7 @@ SerialInterfaces serial_interfaces(const stdlib::UnitType& unit) {
 }
 
 uint32_t xt_baud(const StationConfig& station) {
-  return serial_interfaces(*station.unit).xt_has_s13 && !station.serial.s13 ? 57'600 : 9'600;
+  return serial_interfaces(*station.unit).xt_has_s13 && !station.serial.s13 ? kFactoryXtBaud : kS13Baud;
 }
 
 bool sends_setpoints(int32_t p750) {

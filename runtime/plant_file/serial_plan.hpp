@@ -23,6 +23,7 @@ SerialInterfaces serial_interfaces(const stdlib::UnitType& unit);
 
 // Rate of a station at its two interfaces.
 inline constexpr uint32_t kX13Baud = 9'600;
+inline constexpr uint32_t kS13Baud = 9'600, kFactoryXtBaud = 57'600;  // S13 on and off (MDX60B/61B chapter 4.1.1)
 uint32_t xt_baud(const StationConfig& station);
 
 // How long a line of the plant may be, in mm.

@@ -12,7 +12,7 @@
 
 namespace ipos::runtime {
 
-enum class SignalKind : uint8_t { Variable, Parameter, Input, Output, State, Any };
+enum class SignalKind : uint8_t { Variable, Parameter, Input, Output, State, Switch, Any };
 
 struct Signal {
   std::string station;

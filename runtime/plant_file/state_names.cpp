@@ -18,7 +18,20 @@ constexpr std::string_view kUnits[] = {
 #include "runtime/plant_file/station_states.def"
 };
 
+constexpr StationSwitchType kSwitches[] = {
+#define STATION_SWITCH(name, word, most, meaning) {StationSwitch::name, word, most, meaning},
+#include "runtime/plant_file/station_switches.def"
+};
+
 }  // namespace
+
+std::span<const StationSwitchType> station_switches() { return kSwitches; }
+
+const StationSwitchType* find_switch(std::string_view word) {
+  const auto* const found = std::find_if(std::begin(kSwitches), std::end(kSwitches),
+                                         [word](const StationSwitchType& type) { return type.word == word; });
+  return found == std::end(kSwitches) ? nullptr : found;
+}
 
 int find_state(std::string_view name) {
   const auto* const found = std::find(std::begin(kNames), std::end(kNames), name);

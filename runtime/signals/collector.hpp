@@ -43,6 +43,7 @@ void add_analog(Collector& out);
 void add_states(Collector& out);
 void add_states_beside_drive(Collector& out);  // without those that a value of the drive has the name of
 std::optional<Signal> state_signal(Owner owner, std::string_view name);  // one of them
+void add_card(Collector& out);  // lamps and switches, among the states
 void add_words(Collector& out);
 void add_drive_values(Collector& out);
 void add_tasks(Collector& out);
@@ -57,6 +58,7 @@ bool is_drive_value(std::string_view name);
 Refusal write_variable(runtime::Station& station, uint32_t number, int32_t value);
 Refusal write_parameter(runtime::Station& station, uint32_t index, int32_t value);
 Refusal set_input(runtime::Station& station, uint32_t line, int32_t level);
+Refusal set_switch(runtime::Station& station, uint32_t which, int32_t value);
 Refusal set_word(runtime::Station& station, uint32_t word, int32_t value);
 
 }  // namespace ipos::signals

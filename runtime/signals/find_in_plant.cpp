@@ -122,7 +122,7 @@ struct KindOfFile {
 };
 // In the order of the kinds of a plant file.
 constexpr KindOfFile kKinds[] = {{Group::Variable, "variable"}, {Group::Parameter, "parameter"}, {Group::Input, "input"},
-                                 {Group::Output, "output"},     {Group::State, "state"}};
+                                 {Group::Output, "output"},     {Group::State, "state"},         {Group::State, "switch"}};
 
 std::optional<Signal> find_of_gateway(const Gateway& gateway, const runtime::Signal& named, std::string& why) {
   const std::vector<Signal> all = gateway_signals(gateway);

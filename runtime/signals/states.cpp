@@ -46,6 +46,7 @@ std::span<const StationState> station_states() { return kStates; }
 
 void add_states(Collector& out) {
   for (const StationState& state : kStates) add(out, state);
+  add_card(out);
 }
 
 std::optional<Signal> state_signal(Owner owner, std::string_view name) {
@@ -59,6 +60,7 @@ std::optional<Signal> state_signal(Owner owner, std::string_view name) {
 void add_states_beside_drive(Collector& out) {
   for (const StationState& state : kStates)
     if (!is_drive_value(state.name)) add(out, state);
+  add_card(out);
 }
 
 }  // namespace ipos::signals

@@ -54,6 +54,12 @@ class Maker {
     return std::make_unique<ProfibusControl>(place_.queue, place_.next_source++, *bus, config_, settings, place_.journal);
   }
 
+  Made operator()(const FmsMasterConfig& settings) {
+    auto* const bus = as<ProfibusBus>(place_.plant.find_bus(settings.bus));
+    if (bus == nullptr) return nullptr;
+    return std::make_unique<FmsControl>(place_.queue, place_.next_source++, *bus, config_, settings, place_.journal);
+  }
+
   Made operator()(const GatewayConfig& gateway) {
     const std::vector<uint8_t> drives = find_drives(place_.plant, config_, gateway);
     if (drives.empty() || drives.size() > kMostGatewayDrives) {

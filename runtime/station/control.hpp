@@ -18,10 +18,11 @@ namespace ipos::runtime {
 class MovilinkControl;
 class CanopenControl;
 class ProfibusControl;
+class FmsControl;
 class Gateway;
 class PlantParts;
 
-using AnyControl = std::variant<MovilinkControl*, CanopenControl*, ProfibusControl*, Gateway*>;
+using AnyControl = std::variant<MovilinkControl*, CanopenControl*, ProfibusControl*, FmsControl*, Gateway*>;
 
 class Control {
  public:

@@ -1,6 +1,7 @@
 // Looked up each time: an address may be set anew, and a data exchange begins and ends.
 #include "runtime/station/dp_slaves.hpp"
 
+#include <set>
 #include <utility>
 
 #include "runtime/station/profibus_control.hpp"
@@ -23,6 +24,15 @@ DpSlaveOfPlant dp_slave_at(const PlantParts& plant, const Bus& bus, uint8_t addr
       return {gateway->name(), use.option, slave.configuration(), nullptr, gateway};
   }
   return {};
+}
+
+FmsOperator& fms_operator_of(const PlantParts& plant, ProfibusBus& bus) {
+  std::set<uint8_t> taken;
+  for (const ProfibusControl* master : plant.all<ProfibusControl>()) taken.insert(master->settings().settings.address);
+  for (const FmsControl* master : plant.all<FmsControl>()) taken.insert(master->settings().settings.address);
+  for (uint8_t address = 0; address <= profibus::kLastStation; ++address)
+    if (!dp_slave_at(plant, bus, address).name.empty()) taken.insert(address);
+  return bus.fms_operator(taken);
 }
 
 const profibus::SlavePlan* dp_plan_of(const PlantParts& plant, const Bus& bus, uint8_t address) {

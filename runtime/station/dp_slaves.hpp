@@ -24,6 +24,9 @@ struct DpSlaveOfPlant {
 };
 DpSlaveOfPlant dp_slave_at(const PlantParts& plant, const Bus& bus, uint8_t address);
 
+// The operator of FMS on the line, at an address that nobody of the plant has.
+FmsOperator& fms_operator_of(const PlantParts& plant, ProfibusBus& bus);
+
 // What a master of the plant plans for an address. Null: no master does.
 const profibus::SlavePlan* dp_plan_of(const PlantParts& plant, const Bus& bus, uint8_t address);
 

@@ -10,6 +10,7 @@
 #include "runtime/station/bus.hpp"
 #include "runtime/station/can_bus.hpp"
 #include "runtime/station/canopen_control.hpp"
+#include "runtime/station/fms_control.hpp"
 #include "runtime/station/gateway.hpp"
 #include "runtime/station/movilink_control.hpp"
 #include "runtime/station/profibus_control.hpp"

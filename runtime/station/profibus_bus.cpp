@@ -46,6 +46,13 @@ std::optional<std::string> ProfibusBus::send(const std::string& text) {
   return "the frame before is still being sent";
 }
 
+FmsOperator& ProfibusBus::fms_operator(const std::set<uint8_t>& taken) {
+  uint8_t address = 1;
+  while (taken.contains(address)) ++address;
+  if (!fms_operator_) fms_operator_ = std::make_unique<FmsOperator>(place_.queue, place_.source, line_, address);
+  return *fms_operator_;
+}
+
 NodeId ProfibusBus::find_node(const std::string& station) const {
   for (NodeId node = 0; node < line_.node_count() && !station.empty(); ++node)
     if (line_.node_name(node) == station) return node;
@@ -60,8 +67,10 @@ std::vector<std::string> ProfibusBus::findings(const PlantFile& file) const {
 
 std::vector<FaultRule> ProfibusBus::fault_rules() const {
   std::vector<FaultRule> rules;
-  for (const profibus::LineFaultType& type : profibus::line_fault_types())
-    rules.push_back({type.word, type.text, FaultPlace::Either, true, false});
+  for (const profibus::LineFaultType& type : profibus::line_fault_types()) {
+    const bool of_frames = type.scope == profibus::LineFaultScope::Frame;
+    rules.push_back({type.word, type.text, of_frames ? FaultPlace::Either : FaultPlace::Station, of_frames, false});
+  }
   return rules;
 }
 

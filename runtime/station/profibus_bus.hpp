@@ -9,6 +9,7 @@
 
 #include "runtime/bus/profibus/line.hpp"
 #include "runtime/station/bus.hpp"
+#include "runtime/station/fms_operator.hpp"
 #include "runtime/station/last_dp_frames.hpp"
 
 namespace ipos::runtime {
@@ -27,6 +28,8 @@ class ProfibusBus final : public Bus, private profibus::LineObserver {
     return *last_frames_;
   }
   uint32_t source() const { return place_.source; }  // of its events
+  // Made with the first call, with the first address that `taken` has not.
+  FmsOperator& fms_operator(const std::set<uint8_t>& taken);
 
   AnyBus self() override { return this; }
   LineLoad load(Time now) const override { return line_.load(now); }
@@ -50,6 +53,7 @@ class ProfibusBus final : public Bus, private profibus::LineObserver {
   BusPlace place_;
   profibus::Line line_;
   std::unique_ptr<Hand> hand_;
+  std::unique_ptr<FmsOperator> fms_operator_;
   std::unique_ptr<LastDpTraffic> last_frames_;
   // Each is told once.
   std::set<std::tuple<profibus::LineEventKind, NodeId, std::optional<profibus::LineFaultKind>>> told_;

@@ -20,7 +20,7 @@ ProfibusPort::ProfibusPort(EventQueue& queue, ProfibusBus& bus, const StationCon
       journal_(journal),
       server_(door),
       card_(queue, bus.source(), bus.line(), station.name, *station.profibus.option,
-            {station.profibus.address, false, false}, *this, stdlib::parameter_table(*station.unit), *this,
+            {station.profibus.address, station.profibus.fms_switch, station.profibus.terminator.value_or(false)}, *this, stdlib::parameter_table(*station.unit), *this,
             this) {
   power_on();
 }
@@ -28,6 +28,7 @@ ProfibusPort::ProfibusPort(EventQueue& queue, ProfibusBus& bus, const StationCon
 void ProfibusPort::power_on() {
   card_.power_on(queue_.now(), false);
   next_fault_ = queue_.now();
+  link_lost_ = false;
   noted_.reset();
 }
 
@@ -42,6 +43,7 @@ Time ProfibusPort::tick(Time now) {
 
 // Save EEPROM P802 = OFF of a MOVITRAC 31: nothing is stored (MOVITRAC 31 PROFIBUS, 6).
 tl::expected<int32_t, ReturnCode> ProfibusPort::serve(Time now, const ParameterRequest& request) {
+  if (link_lost_) return tl::unexpected(stdlib::return_codes::kCommunication);
   ParameterRequest wanted = request;
   const bool stores = !own_numbers_ || door_.look().server().parameters().value(index::kM31SaveEeprom) != 0;
   if (wanted.service == Service::Write && !stores) wanted.service = Service::WriteVolatile;
@@ -51,6 +53,7 @@ tl::expected<int32_t, ReturnCode> ProfibusPort::serve(Time now, const ParameterR
 }
 
 void ProfibusPort::take_output(Time now, OutputChannel, std::span<const uint16_t> words) {
+  if (link_lost_) return;
   door_.touch().server().take_fieldbus(words);
   tell_reasons(now);
 }
@@ -59,7 +62,7 @@ profibus::FurtherWords ProfibusPort::further_input(Time /*now*/) { return door_.
 
 // The drive of a MOVIDRIVE monitors its process data itself (P819), in Sync mode, too, when no words come.
 void ProfibusPort::cyclic_request(Time) {
-  if (!own_numbers_) door_.touch().server().fieldbus_request();
+  if (!own_numbers_ && !link_lost_) door_.touch().server().fieldbus_request();
 }
 
 // The watchdog time of the master replaces what the parameter had.

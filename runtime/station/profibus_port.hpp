@@ -47,6 +47,7 @@ class ProfibusPort final : public StationPort,
   void fieldbus_timeout_expired(Time now) override;
   void set_fieldbus_address(Time now, uint8_t address) override;
   void on_note(Time now, profibus::SlaveNote what, uint8_t master) override;
+  void on_link(Time /*now*/, bool lost) override { link_lost_ = lost; }
   void tell_reasons(Time now);
   void note(Time now, std::string text);
 
@@ -63,6 +64,7 @@ class ProfibusPort final : public StationPort,
   Door& door_;
   Journal& journal_;
   UnitServer server_;
+  bool link_lost_ = false;      // between card and unit; power-off ends it
   Time next_fault_ = 0;         // when it is taken over again
   std::optional<Noted> noted_;  // last; a master that asks on and on is told once
   profibus::InterfaceCard card_;

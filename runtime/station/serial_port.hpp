@@ -26,6 +26,10 @@ class SerialPort final : public StationPort, private SerialNode, private SerialS
   void power_off() override;
   void power_on(Time now);
 
+  // Of a switch that is turned: what is sent now keeps its rate.
+  uint32_t baud() const { return line_.node_baud(port_.node()); }
+  void set_baud(uint32_t baud) { line_.set_baud(port_.node(), baud); }
+
   // Takes over P810, P811, P750 and P100, and counts missed requests.
   Time tick(Time now) override;
 

@@ -120,6 +120,43 @@ void Station::connect_profibus() {
     profibus_ = std::make_unique<ProfibusPort>(queue_, *lines_.profibus, config_, door_, journal_);
 }
 
+bool Station::has_switch(StationSwitch which) const {
+  if (which == StationSwitch::S13)
+    return !config_.serial.xt.bus.empty() && serial_interfaces(*config_.unit).xt_has_s13;
+  if (config_.profibus.bus.bus.empty() || config_.profibus.option == nullptr) return false;
+  return which != StationSwitch::FmsSwitch || config_.profibus.option->fms;
+}
+
+int32_t Station::switch_value(StationSwitch which) const {
+  if (which == StationSwitch::S13) return xt_ ? (xt_->baud() == kS13Baud ? 1 : 0) : config_.serial.s13 ? 1 : 0;
+  const ProfibusUse& use = config_.profibus;
+  const profibus::CardSwitches set = profibus_ ? profibus_->card().station().switches().set()
+                                               : profibus::CardSwitches{use.address, use.fms_switch, use.terminator.value_or(false)};
+  switch (which) {
+    case StationSwitch::FmsSwitch: return set.fms ? 1 : 0;
+    case StationSwitch::ProfibusAddress: return set.address;
+    default: return set.terminated ? 1 : 0;
+  }
+}
+
+std::optional<std::string> Station::set_switch(StationSwitch which, int32_t value) {
+  if (which == StationSwitch::S13) {
+    if (!xt_) return "the station was never on";
+    xt_->set_baud(value != 0 ? kS13Baud : kFactoryXtBaud);
+    return std::nullopt;
+  }
+  if (!profibus_) return "the station was never on";
+  profibus::LatchedSwitches& switches = profibus_->card().station().switches();
+  profibus::CardSwitches set = std::as_const(switches).set();
+  switch (which) {
+    case StationSwitch::FmsSwitch: set.fms = value != 0; break;
+    case StationSwitch::ProfibusAddress: set.address = static_cast<uint8_t>(value); break;
+    default: set.terminated = value != 0;
+  }
+  switches.set(set);
+  return std::nullopt;
+}
+
 bool Station::has_further_words() const {
   const profibus::OptionType* card = config_.profibus.option;
   return (card != nullptr && card->accepts.most > kProcessWords) || canopen(1) != nullptr || canopen(2) != nullptr;

@@ -13,6 +13,7 @@
 #include "runtime/bus/movilink/keypad.hpp"
 #include "runtime/pace/pacer.hpp"
 #include "runtime/plant_file/plant_file.hpp"
+#include "runtime/plant_file/state_names.hpp"
 #include "runtime/station/canopen_port.hpp"
 #include "runtime/station/profibus_port.hpp"
 #include "runtime/station/sbus_port.hpp"
@@ -137,6 +138,12 @@ class Station final : private Timed, private TaskRunner {
     look();
     return canopen_[static_cast<size_t>(number - 1)].get();
   }
+
+  // What a hand can turn: whether the station has it, how it stands, and turning it. Nothing when it was turned, else why
+  // not.
+  bool has_switch(StationSwitch which) const;
+  int32_t switch_value(StationSwitch which) const;
+  std::optional<std::string> set_switch(StationSwitch which, int32_t value);
 
   // Null when the station has no card on a PROFIBUS.
   ProfibusPort* profibus() { return profibus_.get(); }

@@ -2,8 +2,10 @@
 // service has one end, the slave goes on.
 #include <map>
 
+#include "runtime/bus/profibus/card.hpp"
 #include "runtime/bus/profibus/dp_unit.hpp"
-#include "runtime/bus/profibus/fms_server.hpp"
+#include "runtime/bus/profibus/fms/server.hpp"
+#include "runtime/bus/profibus/fms_objects.hpp"
 #include "stdlib/unit_types.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
@@ -15,8 +17,8 @@ namespace stdlib = ipos::stdlib;
 namespace {
 
 constexpr uint8_t kServices = 0
-#define FMS_SERVICE(name, feature, confirmed, text) +1
-#include "runtime/bus/profibus/fms_services.def"
+#define FMS_SERVICE(name, feature, confirmed, number, of_object, text) +1
+#include "runtime/bus/profibus/fms/services.def"
     ;
 
 // The parameters of the list with their ranges, and a drive that takes at most three words.
@@ -61,7 +63,7 @@ void check_card(Input input) {
   DpUnit unit(parameters, inverter);
   DpSlave slave({8, 0x3100}, unit);
   FmsObjects objects(parameters, inverter, slave);
-  FmsServer fms(objects, option_type(static_cast<OptionKind>(input.u8() % 2)));
+  fms::Server server(objects, option_type(static_cast<OptionKind>(input.u8() % 2)).fms);
   Time now = 0;
   const auto ask = [&](std::optional<uint8_t> point, Octets data) {
     return slave.on_frame(
@@ -75,22 +77,22 @@ void check_card(Input input) {
     const uint8_t cref = input.u8() % 10;
     switch (input.u8() % 8) {
       case 0:
-        if (const FmsConnection* connection = find_fms_connection(cref))
-          fms.initiate(now, cref, 2, master_entry(*connection, 8));
+        if (const fms::Connection* connection = fms::find_connection(cref))
+          server.initiate(now, cref, 2, master_entry(*connection, 8));
         break;
-      case 1: fms.abort(cref); break;
-      case 2: fms.expire(now, cref); break;
+      case 1: server.abort(cref); break;
+      case 2: server.expire(now, cref); break;
       case 3:
       case 4: {
-        FmsRequest request{static_cast<FmsService>(input.u8() % kServices), index_from(input), {}};
+        fms::Request request{static_cast<fms::Service>(input.u8() % kServices), index_from(input), {}};
         request.data.resize(input.u8());
         for (uint8_t& octet : request.data) octet = input.u8();
-        fms.request(now, cref, request);
+        server.request(now, cref, request);
         break;
       }
       case 5:
-        if (const auto response = fms.response(now, cref))
-          require(response->end != FmsEnd::Positive || response->data.size() <= 241,
+        if (const auto response = server.response(now, cref))
+          require(response->end != fms::End::Positive || response->data.size() <= 241,
                   "a response fits into its PDU");
         break;
       default: {

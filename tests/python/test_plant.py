@@ -604,6 +604,29 @@ def test_a_profibus_line():
             bus.send(8, b"1")
 
 
+def test_fms_of_a_station():
+    """MOVITRAC 31 PROFIBUS, 4.2: P120 is 25, so object 1025, four octets BCD of 0.01 s; too large a value is class 8, code 0, 15h."""
+    with ipos.Plant(text=PROFIBUS) as plant:
+        station = plant.buses["dp"].fms(8)
+        station.write(1025, bytes.fromhex("00000950"))
+        assert station.read(1025) == bytes.fromhex("00000950")
+        assert plant["inv"].parameters["P120"].text == "9.50 s"
+        assert station.describe(991) == "991: object code 7, data type 10, 2 octets, read all"
+        assert station.identify().startswith("SEW-Eurodrive GmbH & Co, MOVITRAC, 821")
+        assert station.status() == bytes(2)
+        with pytest.raises(ipos.FmsError) as refused:
+            station.write(1025, bytes.fromhex("99999999"))
+        assert refused.value.code == 0x08000015
+        saved = plant.snapshot()
+        station.write(1025, bytes.fromhex("00000120"))
+        plant.restore(saved)
+        assert station.read(1025) == bytes.fromhex("00000950")
+        with pytest.raises(ipos.FmsError):
+            plant.buses["dp"].fms(9, limit="1s").read(1025)
+        with pytest.raises(ValueError):
+            plant.buses["dp"].fms(8, connection=9).read(1025)
+
+
 def test_the_shaft_takes_a_load(line):
     saw = line["saw"]
     assert list(saw.shaft) == ["shaft_speed", "load_torque"]

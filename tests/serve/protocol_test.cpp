@@ -511,7 +511,7 @@ TEST_F(DpAndSerial, WhatALineHasNotIsRefusedInWords) {
     return error(message);
   };
   EXPECT_EQ(refused({{"bus", "dp"}, {"kind", "short"}}),
-            "there is no fault 'short' of a PROFIBUS line; there are lost, cut, parity, noise, collision");
+            "there is no fault 'short' of a PROFIBUS line; there are lost, cut, parity, noise, collision, swap, link, card, card_flash");
   EXPECT_EQ(refused({{"bus", "dp"}, {"kind", "cut"}, {"identifier", 9}}),
             "'cut' strikes all frames of a sender: frames of a PROFIBUS line have no identifier");
   EXPECT_EQ(refused({{"bus", "dp"}, {"kind", "cut"}, {"station", "mill"}}), "there is no 'mill' on dp");

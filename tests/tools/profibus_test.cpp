@@ -11,6 +11,7 @@
 #include <regex>
 
 #include "tests/harness/contains.hpp"
+#include "tests/harness/proves.hpp"
 #include "tests/tools/command.hpp"
 
 namespace ipos::tests {
@@ -130,6 +131,62 @@ TEST_F(ProfibusTools, ScanAndParametersOfFreeSlaves) {
   EXPECT_TRUE(contains(refused.err, "refused: P073")) << refused.err;
   // It is given free.
   EXPECT_TRUE(contains(scan().out, "waits for Set_Prm")) << "still locked";
+}
+
+// FMS at a port: the same words as of a plant.
+TEST_F(ProfibusTools, FmsAtAPort) {
+  const RunningLine line(folder_);
+  const auto fms = [&](std::vector<std::string> words) {
+    std::vector<std::string> all{"fms", port(), "8", "--quiet", "--patience", "2s"};
+    all.insert(all.end(), words.begin(), words.end());
+    return ipos(all);
+  };
+  EXPECT_EQ(fms({"read", "1025"}).out, "00 00 01 25\n") << "P120 = 1.25 s in BCD";
+  EXPECT_EQ(fms({"write", "1025", "0000", "0950"}).out, "done\n");
+  EXPECT_EQ(fms({"read", "1025", "994"}).out, "00 00 09 50\n0B\n");
+  const CommandResult refused = fms({"write", "1025", "99", "99", "99", "99"});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_TRUE(contains(refused.err, "class 8 code 0 additional 15h")) << refused.err;
+  const CommandResult nobody = ipos({"fms", port(), "7", "identify", "--quiet"});
+  EXPECT_EQ(nobody.exit_code, 1);
+  EXPECT_TRUE(contains(nobody.err, "nobody answers")) << nobody.err;
+}
+
+TEST(Fms, OfAPlant) {
+  PROVES("FMS-CRL-11");
+  TemporaryFolder folder;
+  folder.write("plant.toml", std::string(kLine) + kStations + kController);
+  const auto fms = [&](std::vector<std::string> words) {
+    std::vector<std::string> all{"fms", "plant.toml"};
+    all.insert(all.end(), words.begin(), words.end());
+    return run_ipos(all, folder.path());
+  };
+  EXPECT_EQ(fms({"belt", "read", "1025"}).out, "00 00 01 25\n");
+  EXPECT_EQ(fms({"belt", "read", "990", "--at", "500ms"}).out, "00 06 05 DC 00 00\n") << "of the DP master";
+  EXPECT_EQ(fms({"belt", "ov", "991"}).out, "991: object code 7, data type 10, 2 octets, read all\n");
+  EXPECT_TRUE(contains(fms({"belt", "identify"}).out, "SEW-Eurodrive GmbH & Co, MOVITRAC, 821"));
+  EXPECT_EQ(fms({"belt", "status"}).out, "00 00\n");
+  const std::string list = fms({"belt", "crl"}).out;
+  EXPECT_TRUE(contains(list, "2 MSZY O 20 All All 0 0 0 0 3000; 0 241 0 241; 00 00 00 00 20 00: Read.indication\n")) << list;
+  EXPECT_TRUE(contains(list, "5 MSZY_SI O 23 All All 0 0 1 0 3000; 241 241 0 241; 00 00 10 00 10 00: Write.indication, "
+                             "Event-Notification.request\n"));
+  EXPECT_TRUE(contains(list, "7 MSAZ O 25 All All 0 1 0 0 0; 0 241 0 241; 00 00 00 80 33 00: Get-OV-long.indication, Read.indication, "
+                             "Write.indication, Phys.-Read.indication, Phys.-Write.indication\n"));
+  EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 8);
+  EXPECT_EQ(fms({"pump", "read", "1025"}).exit_code, 1) << "size 0 has no FMS";
+  EXPECT_EQ(fms({"pump", "crl"}).exit_code, 1);
+  const std::pair<std::vector<std::string>, const char*> kWrong[] = {{{"nobody", "status"}, "has no station 'nobody'"},
+                                                                     {{"belt", "go"}, "'go' is no service"},
+                                                                     {{"belt", "read"}, "needs the index"},
+                                                                     {{"belt", "read", "x"}, "is no index"},
+                                                                     {{"belt", "write", "1025"}, "write needs"},
+                                                                     {{"belt", "write", "1025", "0x1"}, "are no octets"},
+                                                                     {{"belt", "status", "1"}, "takes no more words"}};
+  for (const auto& [words, text] : kWrong) {
+    const CommandResult result = fms(words);
+    EXPECT_EQ(result.exit_code, 64) << text;
+    EXPECT_TRUE(contains(result.err, text)) << result.err;
+  }
 }
 
 TEST_F(ProfibusTools, WrongUseAndRefusalsSayWhy) {

@@ -109,6 +109,7 @@ const std::map<std::string, std::vector<Sample>>& samples() {
        {{{"profibus", "gsd", "ffp31", "-o", "-"}, {}},
         {{"profibus", "gsd", "size0", "-o", "out.gsd"}, {}, {"out.gsd"}},
         {{"profibus", "gsd", "dfp", "--unit", "md60a", "-o", "-"}, {}}}},
+      {"fms", {{{"fms", "dp.toml", "inv", "read", "1025", "--at", "10ms"}, {"dp.toml"}}}},
       {"diag", {{{"diag", "plant.toml"}, {"plant.toml", "A.IPC", "u.nv"}}}},
       {"scope", {{{"scope", "b.toml", "--samples", "2"}, {"b.toml"}}}},
       {"scan", {{{"scan", "@port", "--to", "0"}, {"port"}}}},
@@ -180,6 +181,9 @@ class Sweep : public ::testing::Test {
     f.write("A.IPC", "#include \"own.h\"\nmain()\n{\n  while(1) lCount=lCount+STEP;\n}\n");
     f.write("A.ipa", "END\n");
     f.write("can.log", "(1.000000) sbus 400#5566778800000000\n");
+    f.write("dp.toml",
+            "[[bus]]\nname = \"dp\"\nkind = \"profibus\"\n[[station]]\nname = \"inv\"\nunit = \"mc31\"\noption = \"ffp31\"\n"
+            "profibus = \"dp\"\nprofibus_address = 8\n");
     f.write("b.toml", "[[station]]\nname = \"b\"\nunit = \"mdxb\"\n");
     f.write("plant.toml",
             "[[bus]]\nname = \"sbus\"\nkind = \"can\"\n[[station]]\nname = \"u\"\nunit = \"md60a\"\nprogram "

@@ -125,6 +125,7 @@ def commands(verbs: list[str], subverbs: dict[str, list[str]]) -> dict[str, list
                       [["param", "get", line, "P130", "--station", "inverter1"]], [["param", "get", line, "P999", "--station", "inverter1"]],
                       [["param", "save", line, "{out}/unit.settings", "--station", "inverter1"]],
                       [["param", "diff", line, "{out}/unit.settings", "--station", "inverter2"]]]
+    made["fms"] += [[["fms", "examples/profibus/profibus.toml", "belt", "read", "1025"]]]
     made["scan"] += [[["scan"]]]
     made["scope"] += [[["scope", "examples/hoist/hoist.toml", "--samples", "50", "-o", "-"]]]
     made["diag"] += [[["diag", p, station, "--at", "500ms"]] for p, station in ((scom, "unit1"), (line, "inverter1"))]

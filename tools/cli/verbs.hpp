@@ -22,6 +22,7 @@ void add_diag(cli::Verb& program);
 void add_scan(cli::Verb& program);
 void add_explain(cli::Verb& program);
 void add_fmt(cli::Verb& program);
+void add_fms(cli::Verb& program);
 void add_fmu(cli::Verb& program);
 void add_lsp(cli::Verb& program);
 void add_debug(cli::Verb& program);

@@ -131,14 +131,14 @@ void add_profibus(Entries& entries) {
   add(entries, {fmt::format("{:04X}h", ident)}, fmt::format("ident number of {}", model), \
       fmt::format("{:04X}h: ident number of PROFIBUS, {}, GSD file {}\n", ident, model, gsd_file));
 #include "runtime/bus/profibus/options.def"
-#define FMS_SERVICE(name, feature, confirmed, text)                                                   \
+#define FMS_SERVICE(name, feature, confirmed, number, of_object, text)                                \
   add(entries, {text}, confirmed ? "service of FMS, is answered" : "service of FMS, is not answered", \
       fmt::format("{}: service of FMS, {}\n", text, confirmed ? "is answered" : "is not answered"));
-#include "runtime/bus/profibus/fms_services.def"
+#include "runtime/bus/profibus/fms/services.def"
 #define FMS_OBJECT(name, index, length, access, text)                              \
   add(entries, {fmt::format("{}", index)}, fmt::format("object of FMS, {}", text), \
       fmt::format("{}: object of FMS, {}, {} octets\n", index, text, length));
-#include "runtime/bus/profibus/fms_objects.def"
+#include "runtime/bus/profibus/fms/objects.def"
 }
 
 bool is_hex(std::string_view text) {

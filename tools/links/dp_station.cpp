@@ -134,15 +134,14 @@ std::optional<StationKind> DpStation::status(uint8_t address) {
 }
 
 // The frame count bit changes with each answer, so that a repetition is known as one.
-DpReply DpStation::request(uint8_t address, std::optional<uint8_t> point, Octets data) {
+DpReply DpStation::request(uint8_t address, std::optional<uint8_t> point, std::optional<uint8_t> own_point, Octets data) {
   auto& bit = frame_count_[address];
   const uint8_t counted =
       bit ? control::kFrameCountValid | (*bit ? control::kFrameCount : 0) : control::kFrameCount;
-  const auto master_point = point ? std::optional(kMasterAccessPoint) : std::nullopt;
   const auto answer = ask(make_frame(address, kPcAddress,
                                      static_cast<uint8_t>(control::kRequest | counted |
                                                           static_cast<uint8_t>(FdlRequest::SrdHigh)),
-                                     point, master_point, std::move(data)),
+                                     point, own_point, std::move(data)),
                           kLongestFrame, kServiceTries);
   if (!answer) {
     bit.reset();
@@ -156,11 +155,15 @@ DpReply DpStation::request(uint8_t address, std::optional<uint8_t> point, Octets
 }
 
 DpReply DpStation::service(uint8_t address, DpService service, Octets data) {
-  return request(address, static_cast<uint8_t>(service), std::move(data));
+  return request(address, static_cast<uint8_t>(service), kMasterAccessPoint, std::move(data));
 }
 
 DpReply DpStation::exchange(uint8_t address, Octets outputs) {
-  return request(address, std::nullopt, std::move(outputs));
+  return request(address, std::nullopt, std::nullopt, std::move(outputs));
+}
+
+DpReply DpStation::fms(uint8_t address, uint8_t point, Octets data) {
+  return request(address, point, point, std::move(data));
 }
 
 }  // namespace ipos::tools

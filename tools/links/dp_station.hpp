@@ -34,6 +34,7 @@ class DpStation {
   std::optional<profibus::StationKind> status(uint8_t address);
   DpReply service(uint8_t address, profibus::DpService service, profibus::Octets data = {});
   DpReply exchange(uint8_t address, profibus::Octets outputs);
+  DpReply fms(uint8_t address, uint8_t point, profibus::Octets data);  // on a connection
 
   runtime::Time now() { return clock_.now(); }
   const std::string& port_name() const { return flags_.port; }
@@ -48,7 +49,7 @@ class DpStation {
   // The next frame without error; nothing by `end`.
   std::optional<FdlFrame> receive(runtime::Time end);
   std::optional<FdlFrame> ask(const FdlFrame& request, size_t longest_answer, int tries);
-  DpReply request(uint8_t address, std::optional<uint8_t> point, Octets data);
+  DpReply request(uint8_t address, std::optional<uint8_t> point, std::optional<uint8_t> own_point, Octets data);
   runtime::Time wire_time(size_t octets) const;
   void refuse_other_masters();
   void wake_slaves();

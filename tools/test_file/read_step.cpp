@@ -141,6 +141,7 @@ const std::vector<Action> kActions = {
     {"parameter", {"station", "set", "force", "pulse", "release", "for", "every", "times"}, read_signal},
     {"input", {"station", "set", "force", "pulse", "release", "for", "every", "times"}, read_signal},
     {"analog", {"station", "set", "force", "pulse", "release", "for", "every", "times"}, read_signal},
+    {"switch", {"station", "set"}, read_signal},
     {"process_data", {"station", "set", "force", "release"}, read_process_data},
     {"send", {"bus"}, read_send},
     {"await", {"bus", "within"}, read_awaited},

@@ -62,15 +62,8 @@ std::string_view light_text(Light light) {
 }
 
 bool is_lit(Light light, Time now) {
-  switch (light) {
-    case Light::Off: return false;
-    case Light::On: return true;
-    case Light::HalfHertz: return flashes(now, 2 * runtime::kSecond);
-    case Light::OneHertz: return flashes(now, runtime::kSecond);
-    case Light::ThreeHertz: return flashes(now, runtime::kSecond / 3);
-    case Light::Flicker: break;
-  }
-  return flashes(now, runtime::kSecond / 10);
+  const int rate = light_rate(light);
+  return rate == 0 ? light == Light::On : flashes(now, 10 * runtime::kSecond / rate);
 }
 
 }  // namespace ipos::profibus

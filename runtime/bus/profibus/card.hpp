@@ -47,6 +47,7 @@ class LatchedSwitches {
   explicit LatchedSwitches(CardSwitches switches) : set_(switches), active_(switches) {}
 
   void set(CardSwitches switches) { set_ = switches; }
+  const CardSwitches& set() const { return set_; }  // as they stand, which may not act yet
   void power_on(bool supply_was_kept) {
     if (!supply_was_kept) active_ = set_;
   }
@@ -88,6 +89,19 @@ struct CardState {
 };
 
 LedPattern leds(const CardState& state);
+
+// Tenths of a Hz; 0: steady. That of the flicker is ours.
+constexpr int light_rate(Light light) {
+  switch (light) {
+    case Light::HalfHertz: return 5;
+    case Light::OneHertz: return 10;
+    case Light::ThreeHertz: return 30;
+    case Light::Flicker: return 100;
+    case Light::Off:
+    case Light::On: break;
+  }
+  return 0;
+}
 
 // Whether the light is on at a time. About 0.5, 1 and 3 Hz are printed; 10 Hz for the flicker is ours.
 bool is_lit(Light light, Time now);

@@ -8,7 +8,6 @@ namespace ipos::profibus {
 namespace {
 
 constexpr uint8_t kFirstAcyclic = 49, kLastAcyclic = 53;  // access points of DP-V1
-constexpr uint8_t kFirstFms = 20, kLastFms = 26;  // of the FMS connections (MOVITRAC 31 PROFIBUS, 4.3.2)
 
 bool is_srd(const FdlFrame& frame) {
   return frame.asks(FdlRequest::SrdLow) || frame.asks(FdlRequest::SrdHigh);
@@ -23,7 +22,7 @@ FdlFrame status_answer(const FdlFrame& request, FdlAnswer answer) {
 
 SlaveNote why_no_access_point(uint8_t point) {
   if (point >= kFirstAcyclic && point <= kLastAcyclic) return SlaveNote::NoAcyclic;
-  if (point >= kFirstFms && point <= kLastFms) return SlaveNote::NoFms;
+  if (fms::connection_at(point) != nullptr) return SlaveNote::NoFms;
   return SlaveNote::NoAccessPoint;
 }
 
@@ -95,10 +94,22 @@ FdlFrame DpSlave::refuse(Time now, const FdlFrame& request, SlaveNote why) {
 
 FdlFrame DpSlave::respond(Time now, const FdlFrame& request) {
   if (!request.dsap && !request.ssap) return exchange(now, request);
+  if (fms_ != nullptr && request.dsap && request.ssap && fms::connection_at(*request.dsap) != nullptr)
+    return serve_fms(now, request);
   const auto service = request.dsap ? dp_service(*request.dsap) : std::nullopt;
   if (!service || request.ssap != kMasterAccessPoint)
     return refuse(now, request, why_no_access_point(request.dsap.value_or(0)));
   return serve(now, request, *service);
+}
+
+// Any access point of any master: the connections are open ones.
+FdlFrame DpSlave::serve_fms(Time now, const FdlFrame& request) {
+  fms::LinkAnswer answer = fms_->take(now, *request.dsap, {request.source, *request.ssap}, request.data);
+  if (answer.refused) return refuse(now, request, SlaveNote::FmsPartner);
+  using Event = fms::LinkAnswer::Event;
+  if (answer.event != Event::None)
+    note(now, answer.event == Event::Opened ? SlaveNote::FmsOpened : SlaveNote::FmsEnded, request.source);
+  return answer.data.empty() ? make_acknowledgement() : data_answer(request, std::move(answer.data));
 }
 
 // --- services

@@ -13,6 +13,7 @@
 #include "runtime/bus/profibus/cfg_data.hpp"
 #include "runtime/bus/profibus/dp_service.hpp"
 #include "runtime/bus/profibus/fdl_frame.hpp"
+#include "runtime/bus/profibus/fms/slave_links.hpp"
 #include "runtime/bus/profibus/frame_count.hpp"
 #include "runtime/bus/profibus/process_image.hpp"
 #include "runtime/bus/profibus/unit_fault.hpp"
@@ -51,6 +52,8 @@ class SlaveObserver {
  public:
   // `master` is who asked, kNoMaster for what happens by itself.
   virtual void on_note(Time now, SlaveNote note, uint8_t master) = 0;
+  // The link from the card to the unit is lost, or there again.
+  virtual void on_link(Time /*now*/, bool /*lost*/) {}
 
  protected:
   ~SlaveObserver() = default;
@@ -71,6 +74,8 @@ class DpSlave {
   }
 
   void power_on(Time now, SlaveSettings settings);
+  // The connections of FMS behind access points 20 to 26; it must outlive the slave.
+  void set_fms(fms::SlaveLinks& links) { fms_ = &links; }
 
   // An error-free frame on the line, and what the slave answers.
   std::optional<FdlFrame> on_frame(Time now, const FdlFrame& frame);
@@ -94,6 +99,7 @@ class DpSlave {
  private:
   FdlFrame respond(Time now, const FdlFrame& request);
   FdlFrame exchange(Time now, const FdlFrame& request);
+  FdlFrame serve_fms(Time now, const FdlFrame& request);
   FdlFrame serve(Time now, const FdlFrame& request, DpService service);
   FdlFrame parameterise(Time now, const FdlFrame& request);
   FdlFrame configure(Time now, const FdlFrame& request);
@@ -110,6 +116,7 @@ class DpSlave {
   SlaveSettings settings_;
   SlaveUnit& unit_;
   SlaveObserver* observer_;
+  fms::SlaveLinks* fms_ = nullptr;
   SlaveState state_ = SlaveState::WaitPrm;
   uint8_t master_ = kNoMaster;  // that of Set_Prm
   uint8_t min_tsdr_ = kLeastMinTsdr;

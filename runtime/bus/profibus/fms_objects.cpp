@@ -9,12 +9,12 @@ namespace {
 
 enum Index : uint16_t {
 #define FMS_OBJECT(name, index, length, access, text) k##name = index,
-#include "runtime/bus/profibus/fms_objects.def"
+#include "runtime/bus/profibus/fms/objects.def"
 };
 
-constexpr FmsObject kObjects[] = {
-#define FMS_OBJECT(name, index, length, access, text) {index, length, FmsAccess::access, text},
-#include "runtime/bus/profibus/fms_objects.def"
+constexpr fms::Object kObjects[] = {
+#define FMS_OBJECT(name, index, length, access, text) {index, length, fms::Access::access, text},
+#include "runtime/bus/profibus/fms/objects.def"
 };
 
 constexpr uint8_t kParameterLength = 4;
@@ -57,8 +57,8 @@ std::optional<std::vector<BlockEntry>> decode_block(std::span<const uint8_t> oct
   return entries;
 }
 
-std::vector<FmsObject> FmsObjects::list() const {
-  std::vector<FmsObject> objects(std::begin(kObjects), std::end(kObjects));
+std::vector<fms::Object> FmsObjects::list() const {
+  std::vector<fms::Object> objects(std::begin(kObjects), std::end(kObjects));
   for (const stdlib::Parameter* parameter : parameters_.table().by_index())
     objects.push_back(*find(static_cast<uint16_t>(kFirstParameterIndex + parameter->index)));
   return objects;
@@ -66,12 +66,12 @@ std::vector<FmsObject> FmsObjects::list() const {
 
 // The list of the card is longer than that of the parameters: every index from 1000 on is an object, and the
 // inverter refuses what it does not have.
-std::optional<FmsObject> FmsObjects::find(uint16_t index) const {
-  for (const FmsObject& object : kObjects)
+std::optional<fms::Object> FmsObjects::find(uint16_t index) const {
+  for (const fms::Object& object : kObjects)
     if (object.index == index) return object;
   if (index < kFirstParameterIndex) return std::nullopt;
   const auto* parameter = parameters_.table().find(static_cast<uint16_t>(index - kFirstParameterIndex));
-  return FmsObject{index, kParameterLength, FmsAccess::All,
+  return fms::Object{index, kParameterLength, fms::Access::All,
                    parameter != nullptr ? parameter->name : std::string_view{}};
 }
 
@@ -90,42 +90,42 @@ Octets FmsObjects::outputs(size_t length) const {
   return octets;
 }
 
-tl::expected<FmsAccessed, ReturnCode> FmsObjects::read_parameter(Time now, uint16_t index, size_t length) {
+tl::expected<fms::Accessed, ReturnCode> FmsObjects::read_parameter(Time now, uint16_t index, size_t length) {
   const auto value = parameters_.read(now, index);
   if (!value) return tl::unexpected(value.error());
   Octets data;
   put(data, *value);
   data.resize(length);  // left-justified
-  return FmsAccessed{data, 1};
+  return fms::Accessed{data, 1};
 }
 
-tl::expected<FmsAccessed, ReturnCode> FmsObjects::read(Time now, uint16_t index) {
+tl::expected<fms::Accessed, ReturnCode> FmsObjects::read(Time now, uint16_t index) {
   const auto object = find(index);
-  if (!object) return tl::unexpected(fms_errors::kNoObject);
-  if (object->access == FmsAccess::Write) return tl::unexpected(fms_errors::kAccessDenied);
+  if (!object) return tl::unexpected(fms::errors::kNoObject);
+  if (object->access == fms::Access::Write) return tl::unexpected(fms::errors::kAccessDenied);
   switch (index) {
     case kOutput1:
     case kOutput2:
-    case kOutput3: return FmsAccessed{outputs(object->length)};
+    case kOutput3: return fms::Accessed{outputs(object->length)};
     case kInput1:
     case kInput2:
     case kInput3: {
       Octets data;
       for (const uint16_t value : drive_.input(now)) put(data, value);
       data.resize(object->length);
-      return FmsAccessed{data};
+      return fms::Accessed{data};
     }
-    case kMinTsdr: return FmsAccessed{{slave_.min_tsdr()}};
+    case kMinTsdr: return fms::Accessed{{slave_.min_tsdr()}};
     case kDpDiagnosis: {
       Octets data = encode(slave_.diagnosis(now));
       data.resize(kStandardDiagSize);
-      return FmsAccessed{data};
+      return fms::Accessed{data};
     }
     case kReadPointer: {
       Octets data;
       put(data, pointer_.index);
       put(data, pointer_.increment);
-      return FmsAccessed{data};
+      return fms::Accessed{data};
     }
     case kUniversalRead: {
       auto data = read_parameter(now, pointer_.index, object->length);
@@ -136,16 +136,16 @@ tl::expected<FmsAccessed, ReturnCode> FmsObjects::read(Time now, uint16_t index)
   }
 }
 
-tl::expected<FmsAccessed, ReturnCode> FmsObjects::write_parameter(Time now, uint16_t index, uint32_t data) {
+tl::expected<fms::Accessed, ReturnCode> FmsObjects::write_parameter(Time now, uint16_t index, uint32_t data) {
   const auto stored = parameters_.write(now, index, data);
   if (!stored) return tl::unexpected(stored.error());
-  return FmsAccessed{{}, 1};
+  return fms::Accessed{{}, 1};
 }
 
 // The additional code's high octet tells which entry is wrong; those before it are written, those after not.
-tl::expected<FmsAccessed, ReturnCode> FmsObjects::write_block(Time now, std::span<const uint8_t> data) {
+tl::expected<fms::Accessed, ReturnCode> FmsObjects::write_block(Time now, std::span<const uint8_t> data) {
   const auto entries = decode_block(data);
-  if (!entries) return tl::unexpected(fms_errors::kTypeConflict);
+  if (!entries) return tl::unexpected(fms::errors::kTypeConflict);
   uint16_t number = 0;
   for (const BlockEntry& entry : *entries) {
     ++number;
@@ -155,36 +155,36 @@ tl::expected<FmsAccessed, ReturnCode> FmsObjects::write_block(Time now, std::spa
     code.additional = static_cast<uint16_t>(number << 8 | (code.additional & 0xFF));
     return tl::unexpected(code);
   }
-  return FmsAccessed{{}, number};
+  return fms::Accessed{{}, number};
 }
 
-tl::expected<FmsAccessed, ReturnCode> FmsObjects::write(Time now, uint16_t index,
+tl::expected<fms::Accessed, ReturnCode> FmsObjects::write(Time now, uint16_t index,
                                                         std::span<const uint8_t> data) {
   const auto object = find(index);
-  if (!object) return tl::unexpected(fms_errors::kNoObject);
-  if (object->access == FmsAccess::Read) return tl::unexpected(fms_errors::kAccessDenied);
-  if (data.size() != object->length) return tl::unexpected(fms_errors::kTypeConflict);
+  if (!object) return tl::unexpected(fms::errors::kNoObject);
+  if (object->access == fms::Access::Read) return tl::unexpected(fms::errors::kAccessDenied);
+  if (data.size() != object->length) return tl::unexpected(fms::errors::kTypeConflict);
   switch (index) {
     case kOutput1:
     case kOutput2:
     case kOutput3: {
-      if (slave_.configuration() != nullptr) return tl::unexpected(fms_errors::kAccessDenied);  // DP controls
+      if (slave_.configuration() != nullptr) return tl::unexpected(fms::errors::kAccessDenied);  // DP controls
       std::copy(data.begin(), data.end(), outputs_.begin());
       std::array<uint16_t, 3> words{};
       for (size_t n = 0; n < data.size() / 2; ++n) words[n] = word(data.subspan(2 * n));
       drive_.take_output(now, runtime::OutputChannel::Single, std::span(words).first(data.size() / 2));
-      return FmsAccessed{};
+      return fms::Accessed{};
     }
     case kMinTsdr:
       if (data[0] < kLeastMinTsdr) return tl::unexpected(runtime::return_codes::kTooSmall);
       slave_.set_min_tsdr(data[0]);
-      return FmsAccessed{};
+      return fms::Accessed{};
     // Printed as written by all, but without a meaning: refused (ours).
     case kDpDiagnosis:
-    case kUniversalRead: return tl::unexpected(fms_errors::kAccessDenied);
+    case kUniversalRead: return tl::unexpected(fms::errors::kAccessDenied);
     case kDownloadBlock: return write_block(now, data);
     case kUniversalWrite: return write_parameter(now, word(data), long_word(data.subspan(2)));
-    case kReadPointer: pointer_ = {word(data), word(data.subspan(2))}; return FmsAccessed{};
+    case kReadPointer: pointer_ = {word(data), word(data.subspan(2))}; return fms::Accessed{};
     default: return write_parameter(now, index, long_word(data));
   }
 }

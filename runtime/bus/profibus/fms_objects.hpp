@@ -5,31 +5,15 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include <tl/expected.hpp>
 
-#include "runtime/bus/movilink/return_code.hpp"
 #include "runtime/bus/profibus/dp_slave.hpp"
 #include "runtime/bus/profibus/fieldbus_parameters.hpp"
+#include "runtime/bus/profibus/fms/objects.hpp"
 
 namespace ipos::profibus {
-
-enum class FmsAccess : uint8_t { All, Read, Write };
-
-// As Get-OV describes it: a simple variable (object code 7) of type octet string (10), without password,
-// groups, name and extension.
-struct FmsObject {
-  static constexpr uint8_t kObjectCode = 7;
-  static constexpr uint8_t kDataType = 10;
-
-  uint16_t index;
-  uint8_t length;
-  FmsAccess access;
-  std::string_view name;  // for people; the description has none
-  friend bool operator==(const FmsObject&, const FmsObject&) = default;
-};
 
 // --- contents of the longer objects
 
@@ -49,38 +33,24 @@ struct ReadPointer {  // figure 59 is lost: the order of the two is ours
   uint16_t increment = 0;  // without sign; beyond FFFFh it starts from 0 again (ours)
 };
 
-// The errors of the object list; the inverter's own pass through. Codes of FMS class 6, access.
-namespace fms_errors {
-inline constexpr ReturnCode kAccessDenied{6, 3, 0};
-inline constexpr ReturnCode kUnsupported{6, 6, 0};
-inline constexpr ReturnCode kNoObject{6, 7, 0};
-inline constexpr ReturnCode kTypeConflict = runtime::return_codes::kTypeConflict;
-}  // namespace fms_errors
-
-// What an access costs beside the frames on the line: so many parameter services of the inverter.
-struct FmsAccessed {
-  Octets data;  // of a read
-  uint32_t services = 0;
-};
-
-class FmsObjects {
+class FmsObjects final : public fms::ObjectList {
  public:
   FmsObjects(FieldbusParameters& parameters, runtime::ProcessDataServer& drive, DpSlave& slave)
       : parameters_(parameters), drive_(drive), slave_(slave) {}
 
-  std::vector<FmsObject> list() const;
-  std::optional<FmsObject> find(uint16_t index) const;
+  std::vector<fms::Object> list() const;
+  std::optional<fms::Object> find(uint16_t index) const override;
 
-  tl::expected<FmsAccessed, ReturnCode> read(Time now, uint16_t index);
-  tl::expected<FmsAccessed, ReturnCode> write(Time now, uint16_t index, std::span<const uint8_t> data);
+  tl::expected<fms::Accessed, ReturnCode> read(Time now, uint16_t index) override;
+  tl::expected<fms::Accessed, ReturnCode> write(Time now, uint16_t index, std::span<const uint8_t> data) override;
 
   // The default of the switch is back, and the pointer; the outputs are 0.
   void power_on();
 
  private:
-  tl::expected<FmsAccessed, ReturnCode> read_parameter(Time now, uint16_t index, size_t length);
-  tl::expected<FmsAccessed, ReturnCode> write_parameter(Time now, uint16_t index, uint32_t data);
-  tl::expected<FmsAccessed, ReturnCode> write_block(Time now, std::span<const uint8_t> data);
+  tl::expected<fms::Accessed, ReturnCode> read_parameter(Time now, uint16_t index, size_t length);
+  tl::expected<fms::Accessed, ReturnCode> write_parameter(Time now, uint16_t index, uint32_t data);
+  tl::expected<fms::Accessed, ReturnCode> write_block(Time now, std::span<const uint8_t> data);
   Octets outputs(size_t length) const;
 
   FieldbusParameters& parameters_;

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "runtime/bus/profibus/cfg_data.hpp"
+#include "runtime/bus/profibus/fms/messages.hpp"
 
 namespace ipos::profibus {
 namespace {
@@ -95,6 +96,8 @@ std::string service_text(const FdlFrame& frame) {
   if (!frame.dsap && !frame.ssap) return "Data_Exchange";
   const auto service = point ? dp_service(*point) : std::nullopt;
   if (service) return std::string(dp_service_text(*service));
+  if (const fms::Connection* fms = point ? fms::connection_at(*point) : nullptr)
+    return fmt::format("FMS connection {}", fms->cref);
   return point ? fmt::format("access point {}", *point) : "no access point";
 }
 
@@ -151,7 +154,9 @@ std::string describe(const FdlFrame& frame, std::string_view data) {
   const auto point = frame.is_request() ? frame.dsap : frame.ssap;
   const auto service = point ? dp_service(*point) : std::nullopt;
   return text + ": " +
-         (service ? data_text(*service, frame.data, !frame.is_request()) : hex_text(frame.data));
+         (service ? data_text(*service, frame.data, !frame.is_request())
+          : point && fms::connection_at(*point) != nullptr ? fms::describe(frame.data)
+                                                            : hex_text(frame.data));
 }
 
 std::string frame_kind(const FdlFrame& frame) {

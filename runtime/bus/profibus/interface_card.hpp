@@ -6,7 +6,8 @@
 #include <string>
 
 #include "runtime/bus/profibus/dp_unit.hpp"
-#include "runtime/bus/profibus/fms_server.hpp"
+#include "runtime/bus/profibus/fms/slave_links.hpp"
+#include "runtime/bus/profibus/fms_objects.hpp"
 #include "runtime/bus/profibus/slave_station.hpp"
 
 namespace ipos::profibus {
@@ -25,7 +26,7 @@ class InterfaceCard {
 
   SlaveStation& station() { return station_; }
   const SlaveStation& station() const { return station_; }
-  FmsServer& fms() { return *fms_; }  // of MOVITRAC 31 alone
+  fms::Server& fms() { return *fms_; }  // of MOVITRAC 31 alone
   FieldbusParameters& parameters() { return parameters_; }
   LedPattern leds(Time now) const;
 
@@ -35,7 +36,8 @@ class InterfaceCard {
   DpUnit unit_;
   SlaveStation station_;
   std::optional<FmsObjects> objects_;
-  std::optional<FmsServer> fms_;
+  std::optional<fms::Server> fms_;
+  std::optional<fms::SlaveLinks> links_;
 };
 
 }  // namespace ipos::profibus

@@ -19,6 +19,32 @@ NodeId Line::attach(std::string name, Node& node) {
   return static_cast<NodeId>(nodes_.size() - 1);
 }
 
+namespace {
+enum : uint32_t { kFrameEnds, kFaultBegins, kFaultEnds };
+}  // namespace
+
+void Line::add_fault(const LineFault& fault) {
+  const size_t number = faults_.add(fault);
+  if (line_fault_type(fault.kind).scope == LineFaultScope::Frame) return;  // strikes by itself
+  queue_.schedule(std::max(fault.from, queue_.now()), source_, *this, kFaultBegins, number);
+  if (fault.until != runtime::kNever) queue_.schedule(fault.until, source_, *this, kFaultEnds, number);
+}
+
+bool Line::end_fault(LineFaultKind kind, NodeId sender) {
+  const Time now = queue_.now();
+  if (!faults_.end(kind, sender, now)) return false;
+  if (line_fault_type(kind).scope == LineFaultScope::Station) switch_fault(now, {kind, 0, now, sender}, false);
+  return true;
+}
+
+void Line::switch_fault(Time now, const LineFault& fault, bool on) {
+  if (!on && faults_.lasts(fault.kind, fault.sender, now)) return;  // another one goes on
+  if (on) report({LineEventKind::Fault, now, fault.sender, fault.kind});
+  Station& station = nodes_[fault.sender];
+  if (fault.kind == LineFaultKind::Swap) station.swapped = on;
+  station.node->on_fault(now, fault.kind, on);
+}
+
 bool Line::send(NodeId node, Bits begin, Octets octets) {
   assert(node < nodes_.size());
   Station& station = nodes_[node];
@@ -34,7 +60,7 @@ bool Line::send(NodeId node, Bits begin, Octets octets) {
     report({LineEventKind::Collision, queue_.now(), node});
   }
   station.sending = true;
-  queue_.schedule(at(transmission.end), source_, *this, 0, node);
+  queue_.schedule(at(transmission.end), source_, *this, kFrameEnds, node);
   under_way_.push_back(std::move(transmission));
   return true;
 }
@@ -60,6 +86,10 @@ Reception Line::reception_of(const Transmission& transmission) const {
   Reception reception{tl::unexpected(FrameError::Parity), frame.octets, at(transmission.begin),
                       at(transmission.end)};
   if (transmission.collided) return reception;
+  if (nodes_[transmission.sender].swapped) {
+    reception.frame = tl::unexpected(FrameError::Framing);
+    return reception;
+  }
   if (frame.damage) {
     reception.frame = tl::unexpected(*frame.damage);
     return reception;
@@ -89,9 +119,14 @@ bool Line::talks_over(NodeId node, const Transmission& transmission) const {
   });
 }
 
-void Line::on_event(Time now, uint32_t, uint64_t argument) {
+void Line::on_event(Time now, uint32_t kind, uint64_t argument) {
+  if (kind == kFrameEnds) return end_transmission(now, static_cast<NodeId>(argument));
+  switch_fault(now, faults_[static_cast<size_t>(argument)], kind == kFaultBegins);
+}
+
+void Line::end_transmission(Time now, NodeId who) {
   const auto ended = std::find_if(under_way_.begin(), under_way_.end(),
-                                  [argument](const Transmission& t) { return t.sender == argument; });
+                                  [who](const Transmission& t) { return t.sender == who; });
   assert(ended != under_way_.end());
   Transmission transmission = std::move(*ended);
   under_way_.erase(ended);
@@ -110,7 +145,7 @@ void Line::on_event(Time now, uint32_t, uint64_t argument) {
   for (NodeId node = 0; node < nodes_.size(); ++node) {
     const Station& station = nodes_[node];
     if (node == transmission.sender || !station.connected || talks_over(node, transmission)) continue;
-    if (station.baud == baud_) {
+    if (station.baud == baud_ && !station.swapped) {
       station.node->on_reception(now, reception);
     } else {
       Reception garbage = reception;
@@ -138,6 +173,8 @@ std::string describe(const Line& line, const LineEvent& event) {
   };
   std::string text = fmt::format("{}: {} {}", line.name(), line.node_name(event.node),
                                  kTexts[static_cast<size_t>(event.kind)]);
+  if (event.kind == LineEventKind::Fault)
+    return fmt::format("{}: {} {}", line.name(), line.node_name(event.node), line_fault_type(*event.fault).text);
   if (event.fault) text += fmt::format(": the line {}", line_fault_type(*event.fault).text);
   return text;
 }

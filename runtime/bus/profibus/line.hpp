@@ -28,6 +28,8 @@ class Node {
   // A frame of another station has ended, or what is left of one.
   virtual void on_reception(Time now, const Reception& reception) = 0;
   virtual void on_sent(Time now) = 0;
+  // A fault that lasts begins or ends at this station.
+  virtual void on_fault(Time /*now*/, LineFaultKind /*kind*/, bool /*on*/) {}
 
  protected:
   ~Node() = default;
@@ -42,7 +44,7 @@ struct LineEvent {
   LineEventKind kind;
   Time time;
   NodeId node;
-  std::optional<LineFaultKind> fault = std::nullopt;  // of Struck
+  std::optional<LineFaultKind> fault = std::nullopt;  // of Struck and Fault
 };
 
 class LineObserver {
@@ -64,9 +66,9 @@ class Line final : private runtime::EventTarget {
 
   NodeId attach(std::string name, Node& node);
   void add_observer(LineObserver& observer) { observers_.push_back(&observer); }
-  void add_fault(const LineFault& fault) { faults_.add(fault); }
-  // Frames that begin from now on are not struck any more; false: there is no such fault.
-  bool end_fault(LineFaultKind kind, NodeId sender) { return faults_.end(kind, sender, queue_.now()); }
+  void add_fault(const LineFault& fault);
+  // Frames that begin from now on are not struck any more, and what lasts ends; false: there is no such fault.
+  bool end_fault(LineFaultKind kind, NodeId sender);
 
   // Sends from bit `begin` on, or from now. False: not connected, still sending, or at another rate.
   bool send(NodeId node, Bits begin, const FdlFrame& frame) { return send(node, begin, encode(frame)); }
@@ -96,6 +98,7 @@ class Line final : private runtime::EventTarget {
     uint32_t baud;  // at which it listens
     bool connected = true;
     bool sending = false;
+    bool swapped = false;  // A and B
   };
   struct Transmission {
     NodeId sender;
@@ -112,6 +115,8 @@ class Line final : private runtime::EventTarget {
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
   Reception reception_of(const Transmission& transmission) const;
   bool talks_over(NodeId node, const Transmission& transmission) const;
+  void end_transmission(Time now, NodeId sender);
+  void switch_fault(Time now, const LineFault& fault, bool on);
   void report(const LineEvent& event);
   void count(const Transmission& transmission);
 

@@ -3,6 +3,7 @@
 // check octet.
 #include "runtime/bus/profibus/line_fault.hpp"
 
+#include <algorithm>
 #include <set>
 
 #include "runtime/bus/profibus/timing.hpp"
@@ -11,7 +12,7 @@ namespace ipos::profibus {
 namespace {
 
 constexpr LineFaultType kTypes[] = {
-#define DP_LINE_FAULT(name, word, text) {LineFaultKind::name, word, text},
+#define DP_LINE_FAULT(name, word, scope, text) {LineFaultKind::name, word, LineFaultScope::scope, text},
 #include "runtime/bus/profibus/line_faults.def"
 };
 
@@ -47,6 +48,7 @@ void damage(LineFaultKind kind, WireFrame& frame, runtime::Random& random) {
     case LineFaultKind::Parity:
     case LineFaultKind::Collision: frame.damage = FrameError::Parity; return;
     case LineFaultKind::Noise: break;
+    default: return;  // of stations
   }
   disturb(frame, random);
 }
@@ -75,11 +77,18 @@ bool LineFaults::end(LineFaultKind kind, NodeId sender, Time now) {
   return found;
 }
 
+bool LineFaults::lasts(LineFaultKind kind, NodeId station, Time now) const {
+  return std::any_of(faults_.begin(), faults_.end(), [&](const Planted& planted) {
+    const LineFault& fault = planted.fault;
+    return fault.kind == kind && fault.sender == station && fault.from <= now && now < fault.until;
+  });
+}
+
 std::optional<LineFaultKind> LineFaults::strike(Time now, NodeId sender, WireFrame& frame) {
   std::optional<LineFaultKind> struck;
   for (Planted& planted : faults_) {
     const LineFault& fault = planted.fault;
-    if (now < fault.from || now >= fault.until) continue;
+    if (now < fault.from || now >= fault.until || line_fault_type(fault.kind).scope != LineFaultScope::Frame) continue;
     if (fault.sender != runtime::kNoNode && fault.sender != sender) continue;
     ++planted.seen;
     const bool meant =

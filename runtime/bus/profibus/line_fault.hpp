@@ -19,12 +19,14 @@ using runtime::NodeId;
 using runtime::Time;
 
 enum class LineFaultKind : uint8_t {
-#define DP_LINE_FAULT(name, word, text) name,
+#define DP_LINE_FAULT(name, word, scope, text) name,
 #include "runtime/bus/profibus/line_faults.def"
 };
+enum class LineFaultScope : uint8_t { Frame, Station };
 struct LineFaultType {
   LineFaultKind kind;
   std::string_view word;  // `kind` in a plant file
+  LineFaultScope scope;
   std::string_view text;
 };
 std::span<const LineFaultType> line_fault_types();
@@ -49,7 +51,13 @@ struct WireFrame {
 
 class LineFaults {
  public:
-  void add(const LineFault& fault) { faults_.push_back({fault, runtime::Random(fault.seed)}); }
+  size_t add(const LineFault& fault) {
+    faults_.push_back({fault, runtime::Random(fault.seed)});
+    return faults_.size() - 1;
+  }
+  const LineFault& operator[](size_t n) const { return faults_[n].fault; }
+  // Such a fault of the station lasts.
+  bool lasts(LineFaultKind kind, NodeId station, Time now) const;
 
   // Ends those of the kind and the sender that have begun and have no end of their own. False: there is none.
   bool end(LineFaultKind kind, NodeId sender, Time now);

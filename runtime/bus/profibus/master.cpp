@@ -43,7 +43,7 @@ void Master::set_next(uint8_t address) {
 
 size_t Master::add_slave(SlavePlan plan) {
   assert(state_ == State::Off);
-  slaves_.emplace_back(settings_.address, std::move(plan));
+  partners_.push_back(&slaves_.emplace_back(settings_.address, std::move(plan)));
   return slaves_.size() - 1;
 }
 
@@ -121,7 +121,7 @@ void Master::take_token(Bits from) {
   const Time now = queue_.now();
   hold_until_ = settings_.rotation == runtime::kNever ? runtime::kNever : token_at_ + settings_.rotation;
   token_at_ = now;
-  if (turn_ == slaves_.size()) {
+  if (turn_ == partners_.size()) {
     turn_ = 0;
     ++cycles_;
     const Bits bit = line_.now();
@@ -139,8 +139,8 @@ void Master::work(Bits from) {
 
 bool Master::send_slave_request(Bits from) {
   if (worked_ && queue_.now() >= hold_until_) return false;
-  while (turn_ < slaves_.size()) {
-    auto request = slaves_[turn_].request();
+  while (turn_ < partners_.size()) {
+    auto request = partners_[turn_]->request(queue_.now());
     if (!request) {
       ++turn_;
       continue;
@@ -214,7 +214,7 @@ void Master::repeat_or_give_up() {
     ++repetitions_;
     return send(State::AwaitAnswer, line_.now(), sent_);
   }
-  slaves_[turn_++].unanswered();
+  partners_[turn_++]->unanswered();
   work(line_.now());
 }
 
@@ -231,7 +231,7 @@ void Master::on_reception(Time, const Reception& reception) {
 
 void Master::hear_garbage() {
   if (state_ == State::AwaitAnswer) {
-    slaves_[turn_].garbled();
+    partners_[turn_]->garbled();
     repeat_or_give_up();
   } else if (state_ == State::AwaitStatus) {
     work(line_.now());
@@ -248,7 +248,7 @@ void Master::hear_answer(const FdlFrame& answer) {
   if (!ours) return hear_garbage();
   const Bits from = line_.now() + settings_.idle_1;
   if (state_ == State::AwaitAnswer) {
-    slaves_[turn_++].answered(answer);
+    partners_[turn_++]->answered(queue_.now(), answer);
   } else if (answer.has_control() && answer.station() >= StationKind::MasterReady) {
     list_.set(answer.source);
     set_next(answer.source);

@@ -46,6 +46,7 @@ class Master final : public Node, private runtime::EventTarget {
   Master& operator=(const Master&) = delete;
 
   size_t add_slave(SlavePlan plan);  // before start()
+  void add_partner(MasterPartner& partner) { partners_.push_back(&partner); }  // it must outlive the master
   SlaveHandler& slave(size_t n) { return slaves_[n]; }
 
   void start();
@@ -104,6 +105,7 @@ class Master final : public Node, private runtime::EventTarget {
   MasterSettings settings_;
   MasterClient* client_;
   std::deque<SlaveHandler> slaves_;
+  std::vector<MasterPartner*> partners_;  // all whom it asks, in turn
   std::deque<GlobalCommand> controls_;
 
   State state_ = State::Off;
@@ -118,7 +120,7 @@ class Master final : public Node, private runtime::EventTarget {
   FdlFrame watched_;              // the token by which rotations are counted while listening
   uint32_t rotations_heard_ = 0;
 
-  size_t turn_ = 0;      // slave whose turn it is
+  size_t turn_ = 0;      // partner whose turn it is
   bool worked_ = false;  // a request in this token
   bool gap_polled_ = false;
   uint32_t rotations_ = 0;  // since the last GAP poll

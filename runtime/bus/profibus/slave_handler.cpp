@@ -9,9 +9,7 @@ SlaveHandler::SlaveHandler(uint8_t master, SlavePlan plan)
 }
 
 FdlFrame SlaveHandler::make(std::optional<DpService> service, Octets data) {
-  unsigned code = control::kRequest | static_cast<uint8_t>(FdlRequest::SrdHigh);
-  if (frame_count_) code |= control::kFrameCount;
-  if (!first_) code |= control::kFrameCountValid;
+  const unsigned code = control::kRequest | sequence_.bits() | static_cast<uint8_t>(FdlRequest::SrdHigh);
   std::optional<uint8_t> dsap, ssap;
   if (service) {
     dsap = static_cast<uint8_t>(*service);
@@ -37,8 +35,7 @@ std::optional<FdlFrame> SlaveHandler::request() {
 }
 
 void SlaveHandler::answered(const FdlFrame& answer) {
-  first_ = false;
-  frame_count_ = !frame_count_;
+  sequence_.answered();
   view_.set(diag::kNonExistent, false);
   switch (asked_) {
     case Asked::Diag: return diagnosed(answer);
@@ -54,7 +51,7 @@ void SlaveHandler::answered(const FdlFrame& answer) {
 
 void SlaveHandler::unanswered() {
   view_.set(diag::kNonExistent, true);
-  first_ = frame_count_ = true;
+  sequence_ = {};
   restart();
 }
 

@@ -9,6 +9,8 @@
 
 #include "runtime/bus/profibus/dp_service.hpp"
 #include "runtime/bus/profibus/fdl_frame.hpp"
+#include "runtime/bus/profibus/frame_sequence.hpp"
+#include "runtime/bus/profibus/master_partner.hpp"
 
 namespace ipos::profibus {
 
@@ -23,17 +25,19 @@ struct SlavePlan {
 
 enum class HandlerState : uint8_t { FirstDiag, Prm, Cfg, SecondDiag, Exchange };
 
-class SlaveHandler {
+class SlaveHandler final : public MasterPartner {
  public:
   SlaveHandler(uint8_t master, SlavePlan plan);
 
   // The next request; nothing for a slave that is taken out of the cycle.
   std::optional<FdlFrame> request();
+  std::optional<FdlFrame> request(Time) override { return request(); }
   // Exactly one of these follows, after all repetitions.
   void answered(const FdlFrame& answer);
-  void unanswered();
+  void answered(Time, const FdlFrame& answer) override { answered(answer); }
+  void unanswered() override;
   // What came instead of an answer; the request is repeated, or unanswered() follows.
-  void garbled() { view_.set(diag::kInvalidResponse, true); }
+  void garbled() override { view_.set(diag::kInvalidResponse, true); }
 
   void set_outputs(Octets outputs) { outputs_ = std::move(outputs); }  // as long as planned
   void set_active(bool active);
@@ -60,8 +64,7 @@ class SlaveHandler {
   Asked asked_ = Asked::Diag;
   bool active_ = true;
   bool diagnosis_wanted_ = false;
-  bool first_ = true;        // of a sequence of frame count bits
-  bool frame_count_ = true;  // of the next request
+  FrameSequence sequence_;
   Octets outputs_;
   Octets inputs_;
   Diagnosis view_;

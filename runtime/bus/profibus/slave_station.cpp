@@ -13,6 +13,7 @@ SlaveStation::SlaveStation(runtime::EventQueue& queue, uint32_t source, Line& li
       source_(source),
       line_(line),
       option_(option),
+      observer_(observer),
       switches_(switches),
       slave_(switches_.slave_settings(option, line.baud()), unit, observer),
       node_(line.attach(std::move(name), *this)) {
@@ -43,10 +44,17 @@ void SlaveStation::on_reception(Time now, const Reception& reception) {
     if (rate_.heard_error(now)) line_.listen_at(node_, rate_.baud());
     return;
   }
-  if (!rate_.heard_frame()) return;
+  if (!rate_.heard_frame() || hardware_ != HardwareFault::None) return;
   const auto answer = slave_.on_frame(now, *reception.frame);
   if (answer) line_.send(node_, line_.now() + std::max<Bits>(slave_.min_tsdr(), reaction_), *answer);
   watch();
+}
+
+// With a fault of its bus connection it does not answer (ours); without the link it does, and services fail.
+void SlaveStation::on_fault(Time now, LineFaultKind kind, bool on) {
+  if (kind == LineFaultKind::Link && observer_ != nullptr) observer_->on_link(now, on);
+  if (kind == LineFaultKind::Card) hardware_ = on ? HardwareFault::GreenDark : HardwareFault::None;
+  if (kind == LineFaultKind::CardFlash) hardware_ = on ? HardwareFault::BothFlash : HardwareFault::None;
 }
 
 // The deadline moves away with each request: the event that stands finds the new one by itself.

@@ -28,6 +28,7 @@ class SlaveStation final : public Node, private runtime::EventTarget {
   DpSlave& slave() { return slave_; }
   const DpSlave& slave() const { return slave_; }
   LatchedSwitches& switches() { return switches_; }
+  const LatchedSwitches& switches() const { return switches_; }
   NodeId node() const { return node_; }
   const BaudSearch& rate() const { return rate_; }
 
@@ -42,6 +43,7 @@ class SlaveStation final : public Node, private runtime::EventTarget {
 
   void on_reception(Time now, const Reception& reception) override;
   void on_sent(Time) override {}
+  void on_fault(Time now, LineFaultKind kind, bool on) override;
 
  private:
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
@@ -52,6 +54,7 @@ class SlaveStation final : public Node, private runtime::EventTarget {
   uint32_t source_;
   Line& line_;
   const OptionType& option_;
+  SlaveObserver* observer_;
   LatchedSwitches switches_;
   DpSlave slave_;
   NodeId node_;

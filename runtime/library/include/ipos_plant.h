@@ -324,6 +324,26 @@ ipos_plant_status ipos_plant_serial_send(ipos_plant* plant, uint32_t bus, const 
 /* The next MOVILINK telegram of an RS-485 line, or frame of a PROFIBUS line; each is given once. IPOS_PLANT_NOTHING. */
 ipos_plant_status ipos_plant_serial_receive(ipos_plant* plant, uint32_t bus, ipos_plant_telegram* telegram);
 
+typedef int32_t ipos_plant_fms_end;
+enum { IPOS_PLANT_FMS_DONE = 0, IPOS_PLANT_FMS_ERROR = 1, IPOS_PLANT_FMS_REJECTED = 2, IPOS_PLANT_FMS_ABORTED = 3 };
+
+typedef struct ipos_plant_fms_answer {
+  ipos_plant_fms_end end;
+  uint32_t code; /* of an error: class, code and additional code */
+  const uint8_t* data;
+  size_t length;
+  const char* text; /* in words */
+} ipos_plant_fms_answer;
+
+/* A service of FMS on a PROFIBUS line, with a master of the library's own, which joins the ring with the first one. The plant
+ * runs until the answer is there, at most to `until`: then IPOS_PLANT_NOTHING.
+ *   connection  2 to 8, 7 is an acyclic one with all services
+ *   service     "read", "write", "ov", "identify", "status", "initiate", "abort"
+ *   data        of write */
+ipos_plant_status ipos_plant_fms(ipos_plant* plant, uint32_t bus, uint8_t address, uint8_t connection, const char* service,
+                                 uint16_t index, const uint8_t* data, size_t length, int64_t until,
+                                 ipos_plant_fms_answer* answer);
+
 /* Plants faults of lines while the plant runs: the text of [[fault]] tables as in a plant file. Their times count from
  * now. IPOS_PLANT_BAD_VALUE (the message has line and column), IPOS_PLANT_REFUSED. */
 ipos_plant_status ipos_plant_line_fault(ipos_plant* plant, const char* text);

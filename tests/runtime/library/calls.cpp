@@ -214,7 +214,9 @@ class Player {
         ipos_plant_serial_receive(plant_, small(), &telegram_);
         return ipos_plant_serial_send(plant_, small(), bytes.data(), u8() % 7U);
       }
-      case 30: return ipos_plant_line_fault(plant_, text());
+      case 30:
+        if (u8() % 2 == 0) return ipos_plant_line_fault(plant_, text());
+        return ipos_plant_fms(plant_, small(), u8() % 12, u8() % 9, "read", static_cast<uint16_t>(900 + u8()), nullptr, 0, 0, &fms_);
       case 31: return ipos_plant_journal_at(plant_, u8() % 8U, &entry_);
       case 32: return save();
       case 33: return saves_++ >= kMostSaves ? IPOS_PLANT_OK : ipos_plant_replay(plant_, condition, this);
@@ -266,6 +268,7 @@ class Player {
   ipos_plant_signal_info signal_{};
   ipos_plant_load load_{};
   ipos_plant_telegram telegram_{};
+  ipos_plant_fms_answer fms_{};
   ipos_plant_entry entry_{};
 };
 

@@ -21,7 +21,7 @@ inline constexpr std::string_view kFunctions[] = {
     "ipos_plant_read_many", "ipos_plant_read_text", "ipos_plant_write", "ipos_plant_write_text",
     "ipos_plant_force", "ipos_plant_force_text", "ipos_plant_release", "ipos_plant_bus_at",
     "ipos_plant_bus", "ipos_plant_bus_load", "ipos_plant_join", "ipos_plant_send", "ipos_plant_receive",
-    "ipos_plant_node_name", "ipos_plant_serial_send", "ipos_plant_serial_receive", "ipos_plant_line_fault",
+    "ipos_plant_node_name", "ipos_plant_serial_send", "ipos_plant_serial_receive", "ipos_plant_line_fault", "ipos_plant_fms",
     "ipos_plant_parameter_index", "ipos_plant_parameter_text", "ipos_plant_parameter_value",
     "ipos_plant_return_code", "ipos_plant_unit_name", "ipos_plant_unit_signs", "ipos_plant_journal_at", "ipos_plant_save", "ipos_plant_restore",
     "ipos_plant_restart", "ipos_plant_replay", "ipos_plant_trace_hash",
@@ -90,6 +90,7 @@ Result called(Result result) {
 #define ipos_plant_node_name(...) IPOS_CALLED(ipos_plant_node_name, __VA_ARGS__)
 #define ipos_plant_serial_send(...) IPOS_CALLED(ipos_plant_serial_send, __VA_ARGS__)
 #define ipos_plant_serial_receive(...) IPOS_CALLED(ipos_plant_serial_receive, __VA_ARGS__)
+#define ipos_plant_fms(...) IPOS_CALLED(ipos_plant_fms, __VA_ARGS__)
 #define ipos_plant_line_fault(...) IPOS_CALLED(ipos_plant_line_fault, __VA_ARGS__)
 #define ipos_plant_parameter_index(...) IPOS_CALLED(ipos_plant_parameter_index, __VA_ARGS__)
 #define ipos_plant_parameter_text(...) IPOS_CALLED(ipos_plant_parameter_text, __VA_ARGS__)

@@ -297,6 +297,20 @@ profibus_address = 8
   EXPECT_EQ(load.frames, 3U);
   // 3 x 66 bits of 4500, in percent.
   EXPECT_NEAR(load.percent, 100.0 * 198 / 4500, 0.1);
+  // FMS: object 1025 is P120, 9.50 s as BCD.
+  const std::array<uint8_t, 4> ramp{0x00, 0x00, 0x09, 0x50};
+  ipos_plant_fms_answer answer{};
+  EXPECT_EQ(ipos_plant_fms(plant, bus, 8, 7, "write", 1025, ramp.data(), ramp.size(), 2'000'000'000, &answer), IPOS_PLANT_OK);
+  EXPECT_EQ(answer.end, IPOS_PLANT_FMS_DONE);
+  ASSERT_EQ(ipos_plant_fms(plant, bus, 8, 7, "read", 1025, nullptr, 0, 4'000'000'000, &answer), IPOS_PLANT_OK);
+  EXPECT_EQ(std::vector<uint8_t>(answer.data, answer.data + answer.length), std::vector<uint8_t>(ramp.begin(), ramp.end()));
+  ASSERT_EQ(ipos_plant_fms(plant, bus, 8, 7, "read", 987, nullptr, 0, 4'000'000'000, &answer), IPOS_PLANT_OK);
+  EXPECT_EQ(answer.end, IPOS_PLANT_FMS_ERROR);
+  EXPECT_EQ(answer.code, 0x06070000U);
+  EXPECT_EQ(ipos_plant_fms(plant, bus, 8, 7, "go", 0, nullptr, 0, 4'000'000'000, &answer), IPOS_PLANT_BAD_VALUE);
+  EXPECT_EQ(ipos_plant_fms(plant, bus, 8, 9, "read", 0, nullptr, 0, 4'000'000'000, &answer), IPOS_PLANT_BAD_VALUE);
+  EXPECT_EQ(ipos_plant_fms(plant, bus, 8, 7, "read", 0, nullptr, 0, 0, &answer), IPOS_PLANT_INVALID_ARGUMENT);
+  EXPECT_EQ(ipos_plant_fms(plant, 5, 8, 7, "read", 0, nullptr, 0, 4'000'000'000, &answer), IPOS_PLANT_NO_BUS);
   EXPECT_EQ(ipos_plant_close(plant), IPOS_PLANT_OK);
 }
 

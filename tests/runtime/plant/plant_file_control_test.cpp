@@ -56,7 +56,7 @@ TEST(PlantFileControl, MistakesOfAnSbus) {
       kSbusControl,
       {
           {"^node = 1\n", "unknown key 'node' in [[control]]; known are name, kind, sbus, sync, cycle"},
-          {"kind = ^'can'\n", "'can' is no kind of control; known are sbus, canopen"},
+          {"kind = ^'can'\n", "'can' is no kind of control; known are sbus, canopen, fms"},
           {"sync = ^2048\n", "sync is 0 to 2047"},
           {"cycle = ^'4999us'\n", "a sync cycle has at least 5ms"},
           {"cycle = ^'soon'\n", "'soon' is no time"},

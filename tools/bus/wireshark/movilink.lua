@@ -220,7 +220,56 @@ d.control = ProtoField.uint8("ipos_fdl.control", "Frame control", base.HEX)
 d.dsap = ProtoField.uint8("ipos_fdl.dsap", "DSAP")
 d.ssap = ProtoField.uint8("ipos_fdl.ssap", "SSAP")
 d.data = ProtoField.bytes("ipos_fdl.data", "Data")
+d.fms = ProtoField.string("ipos_fdl.fms", "FMS")
 d.void = ProtoField.string("ipos_fdl.void", "Void")
+
+-- FMS on access points 20 to 26: an octet of the LLI, then a unit of components (docs/reference/protocols/profibus.md#fms).
+local links = {[0] = "data", "Associate", "Associated", "Refused", "Abort", "idle"}
+local kinds = {"request", "response", "error", nil, "Reject", "Initiate"}
+local services = {[0] = "Status", "Identify", "Read", "Write", "Get-OV", [25] = "Acknowledge-Event-Notification",
+                  [26] = "Phys.-Read", [27] = "Phys.-Write"}
+
+-- The ID Info at a place: tag, length and the place behind it; nothing where the octets end before.
+local function id_info(buffer, at)
+  if at >= buffer:len() then return end
+  local head = buffer(at, 1):uint()
+  local tag, length = math.floor(head / 16) % 8, head % 16
+  at = at + 1
+  if tag == 7 then
+    if at >= buffer:len() then return end
+    tag, at = buffer(at, 1):uint(), at + 1
+  end
+  if length == 15 then
+    if at >= buffer:len() then return end
+    length, at = buffer(at, 1):uint(), at + 1
+  end
+  return tag, length, at
+end
+
+local function fms_words(buffer)
+  local link = buffer(0, 1):uint()
+  local text = links[link] or "no unit of FMS"
+  local tag, _, at = id_info(buffer, link == 1 and 3 or 1)
+  if link > 3 or not tag or not kinds[tag] then return text end
+  if tag == 6 then return text .. ", " .. kinds[tag] end
+  if at >= buffer:len() then return "no unit of FMS" end
+  local invoke = buffer(at, 1):uint()
+  if tag == 5 then return string.format("Reject of request %d", invoke) end
+  local service, parts, place = id_info(buffer, at + 1)
+  if not service then return "no unit of FMS" end
+  text = string.format("%s %s %d", services[service] or ("service " .. service), kinds[tag], invoke)
+  for _ = 1, parts do
+    local part, length, from = id_info(buffer, place)
+    if not part or from + length > buffer:len() then return text end
+    if tag == 1 and part == 0 and length == 2 then
+      text = string.format("%s, index %d", text, buffer(from, 2):uint())
+    elseif length > 0 then
+      text = text .. ": " .. tostring(buffer(from, length):bytes())
+    end
+    place = from + length
+  end
+  return text
+end
 
 local function addresses(buffer, tree, at)
   tree:add(d.destination, buffer(at, 1), buffer(at, 1):uint() % 128)
@@ -259,17 +308,29 @@ function fdl.dissector(buffer, pinfo, root)
   end
   addresses(buffer, tree, first)
   tree:add(d.control, buffer(first + 2, 1))
-  local at = first + 3
+  local at, dsap, ssap = first + 3
   if buffer(first, 1):uint() >= 128 and at < last then
-    tree:add(d.dsap, buffer(at, 1), buffer(at, 1):uint() % 64)
+    dsap = buffer(at, 1):uint() % 64
+    tree:add(d.dsap, buffer(at, 1), dsap)
     at = at + 1
   end
   if buffer(first + 1, 1):uint() >= 128 and at < last then
-    tree:add(d.ssap, buffer(at, 1), buffer(at, 1):uint() % 64)
+    ssap = buffer(at, 1):uint() % 64
+    tree:add(d.ssap, buffer(at, 1), ssap)
     at = at + 1
   end
-  if at < last then tree:add(d.data, buffer(at, last - at)) end
-  pinfo.cols.info = string.format("%d -> %d, control %02X", buffer(first + 1, 1):uint() % 128,
-                                  buffer(first, 1):uint() % 128, buffer(first + 2, 1):uint())
+  local words = ""
+  -- The access point of the slave: where a request goes, and where an answer comes from.
+  local point = math.floor(buffer(first + 2, 1):uint() / 64) % 2 == 1 and dsap or ssap
+  if at < last then
+    tree:add(d.data, buffer(at, last - at))
+    if point and point >= 20 and point <= 26 then
+      words = fms_words(buffer(at, last - at):tvb())
+      tree:add(d.fms, buffer(at, last - at), words)
+      words = string.format(", FMS connection %d: %s", point - 18, words)
+    end
+  end
+  pinfo.cols.info = string.format("%d -> %d, control %02X%s", buffer(first + 1, 1):uint() % 128,
+                                  buffer(first, 1):uint() % 128, buffer(first + 2, 1):uint(), words)
 end
 DissectorTable.get("wtap_encap"):add(wtap.USER1, fdl)

@@ -1,5 +1,5 @@
 // FMS at service level: objects, connections and services against the tables of the manual.
-#include "runtime/bus/profibus/fms_server.hpp"
+#include "runtime/bus/profibus/fms/server.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -10,6 +10,7 @@
 #include <set>
 
 #include "runtime/bus/profibus/card.hpp"
+#include "runtime/bus/profibus/fms_objects.hpp"
 #include "tests/runtime/bus/profibus/mc31_rig.hpp"
 
 namespace ipos::tests {
@@ -18,13 +19,13 @@ namespace {
 // A card with an FMS master before it, and DP where a test wants it.
 struct FmsBench {
   explicit FmsBench(OptionKind kind = OptionKind::Ffp31)
-      : objects(parameters, drive, slave), server(objects, option_type(kind)) {}
+      : objects(parameters, drive, slave), server(objects, option_type(kind).fms) {}
 
-  FmsResponse open(uint8_t cref) {
-    return server.initiate(now, cref, 2, master_entry(*find_fms_connection(cref), 8));
+  fms::Response open(uint8_t cref) {
+    return server.initiate(now, cref, 2, master_entry(*fms::find_connection(cref), 8));
   }
   // The answer, however long it takes; `took` says how long.
-  FmsResponse ask(uint8_t cref, FmsService service, uint16_t index = 0, const Octets& data = {}) {
+  fms::Response ask(uint8_t cref, fms::Service service, uint16_t index = 0, const Octets& data = {}) {
     const Time from = now;
     auto response = server.request(now, cref, {service, index, data});
     for (int ms = 0; !response && ms < 2000; ++ms) {
@@ -35,17 +36,17 @@ struct FmsBench {
     return *response;
   }
   std::string read(uint16_t index) {
-    const FmsResponse response = ask(7, FmsService::Read, index);
-    return response.end == FmsEnd::Positive ? text_of(response.data) : error(response);
+    const fms::Response response = ask(7, fms::Service::Read, index);
+    return response.end == fms::End::Positive ? text_of(response.data) : error(response);
   }
   std::string write(uint16_t index, const std::string& data) { return write(index, hex(data)); }
   std::string write(uint16_t index, const Octets& data) {
-    const FmsResponse response = ask(7, FmsService::Write, index, data);
-    return response.end == FmsEnd::Positive ? "+" : error(response);
+    const fms::Response response = ask(7, fms::Service::Write, index, data);
+    return response.end == fms::End::Positive ? "+" : error(response);
   }
-  static std::string error(const FmsResponse& response) {
-    if (response.end == FmsEnd::Rejected) return "Reject";
-    if (response.end == FmsEnd::Aborted) return "Abort";
+  static std::string error(const fms::Response& response) {
+    if (response.end == fms::End::Rejected) return "Reject";
+    if (response.end == fms::End::Aborted) return "Abort";
     const uint32_t packed = response.error.packed();
     return "error " + text_of(Octets{static_cast<uint8_t>(packed >> 24), static_cast<uint8_t>(packed >> 16),
                                      static_cast<uint8_t>(packed >> 8), static_cast<uint8_t>(packed)});
@@ -66,7 +67,7 @@ struct FmsBench {
   DpUnit unit{parameters, drive};
   DpSlave slave{{8, 0x3100}, unit};
   FmsObjects objects;
-  FmsServer server;
+  fms::Server server;
   Time now = 0;
   Time took = 0;
 };
@@ -80,33 +81,33 @@ TEST(FmsObjects, TheList) {
   struct Row {
     uint16_t index;
     int length;
-    FmsAccess access;
+    fms::Access access;
   };
   const Row kPrinted[] = {
-      {988, 2, FmsAccess::All},    {989, 4, FmsAccess::All},  {990, 6, FmsAccess::All},
-      {991, 2, FmsAccess::Read},   {992, 4, FmsAccess::Read}, {993, 6, FmsAccess::Read},
-      {994, 1, FmsAccess::All},    {995, 6, FmsAccess::All},  {996, 230, FmsAccess::Write},
-      {997, 10, FmsAccess::Write}, {998, 4, FmsAccess::All},  {999, 8, FmsAccess::All}};
+      {988, 2, fms::Access::All},    {989, 4, fms::Access::All},  {990, 6, fms::Access::All},
+      {991, 2, fms::Access::Read},   {992, 4, fms::Access::Read}, {993, 6, fms::Access::Read},
+      {994, 1, fms::Access::All},    {995, 6, fms::Access::All},  {996, 230, fms::Access::Write},
+      {997, 10, fms::Access::Write}, {998, 4, fms::Access::All},  {999, 8, fms::Access::All}};
   const auto list = bench.objects.list();
   ASSERT_EQ(list.size(), std::size(kPrinted) + mc31_table().by_index().size());
   for (size_t n = 0; n < std::size(kPrinted); ++n) {
     EXPECT_EQ(list[n].index, kPrinted[n].index);
     EXPECT_EQ(list[n].length, kPrinted[n].length) << list[n].name;
     EXPECT_EQ(list[n].access, kPrinted[n].access) << list[n].name;
-    const FmsResponse description = bench.ask(7, FmsService::GetOvLong, kPrinted[n].index);
+    const fms::Response description = bench.ask(7, fms::Service::GetOvLong, kPrinted[n].index);
     EXPECT_EQ(description.object, list[n]);
   }
-  EXPECT_EQ(FmsObject::kObjectCode, 7);
-  EXPECT_EQ(FmsObject::kDataType, 10);
+  EXPECT_EQ(fms::Object::kObjectCode, 7);
+  EXPECT_EQ(fms::Object::kDataType, 10);
   for (size_t n = 0; n < mc31_table().by_index().size(); ++n) {
-    const FmsObject& object = list[std::size(kPrinted) + n];
+    const fms::Object& object = list[std::size(kPrinted) + n];
     EXPECT_EQ(object.index, 1000 + mc31_table().by_index()[n]->index);
     EXPECT_EQ(object.length, 4);
-    EXPECT_EQ(object.access, FmsAccess::All);
+    EXPECT_EQ(object.access, fms::Access::All);
   }
-  EXPECT_TRUE(std::any_of(list.begin(), list.end(), [](const FmsObject& o) { return o.index == 1025; }));
+  EXPECT_TRUE(std::any_of(list.begin(), list.end(), [](const fms::Object& o) { return o.index == 1025; }));
   for (const int unknown : {0, 987, 1})
-    EXPECT_EQ(FmsBench::error(bench.ask(7, FmsService::GetOvLong, static_cast<uint16_t>(unknown))),
+    EXPECT_EQ(FmsBench::error(bench.ask(7, fms::Service::GetOvLong, static_cast<uint16_t>(unknown))),
               kNoObject);
   // Each process data object is read and written.
   bench.drive.status = {0x0407, 0x05DC, 0x0123};
@@ -138,8 +139,8 @@ TEST(FmsObjects, WithoutAParameterBehindThem) {
   bench.open(7);
   EXPECT_EQ(bench.read(1999), "error 08 00 00 10");
   EXPECT_EQ(bench.read(987), kNoObject);
-  const FmsResponse described = bench.ask(7, FmsService::GetOvLong, 1018);  // P073, read only
-  EXPECT_EQ(described.object->access, FmsAccess::All);
+  const fms::Response described = bench.ask(7, fms::Service::GetOvLong, 1018);  // P073, read only
+  EXPECT_EQ(described.object->access, fms::Access::All);
   EXPECT_EQ(bench.write(1018, "00 00 00 05"), "error 08 00 00 12");
   EXPECT_EQ(bench.write(1025, "00 00 09"), kType);
 }
@@ -216,7 +217,7 @@ TEST(FmsObjects, DownloadBlock) {
   block[15] = 0x97;  // 1175: P841
   bench.drive.served.clear();
   EXPECT_EQ(bench.write(996, block), "+");
-  EXPECT_EQ(bench.took, 3 * FmsServer::kProcessing);  // the answer comes last
+  EXPECT_EQ(bench.took, 3 * fms::Server::kProcessing);  // the answer comes last
   ASSERT_EQ(bench.drive.served.size(), 3U);
   EXPECT_EQ(bench.drive.served[0].index, 25);
   EXPECT_EQ(bench.drive.served[1].index, 117);
@@ -296,8 +297,8 @@ TEST(FmsServices, BesideDpWhateverTheSwitchSays) {
   EXPECT_EQ(bench.read(1025), "00 00 01 00");
   EXPECT_EQ(bench.read(995), "00 04 00 01 31 00");
   FmsBench small(OptionKind::Size0);
-  EXPECT_EQ(small.open(7).end, FmsEnd::Rejected);
-  EXPECT_FALSE(small.server.connected());
+  EXPECT_EQ(small.open(7).end, fms::End::Rejected);
+  EXPECT_FALSE(small.server.connected(0));
 }
 
 // --- services
@@ -305,43 +306,43 @@ TEST(FmsServices, BesideDpWhateverTheSwitchSays) {
 TEST(FmsServices, InitiateAndWhatItChecks) {
   PROVES("FMS-SVC-02", "FMS-SVC-03");
   FmsBench bench;
-  EXPECT_EQ(bench.open(7).end, FmsEnd::Positive);
+  EXPECT_EQ(bench.open(7).end, fms::End::Positive);
   EXPECT_TRUE(bench.server.is_open(7));
-  const FmsMasterEntry good = master_entry(*find_fms_connection(7), 8);
-  const auto attempt = [](const FmsMasterEntry& entry) {
+  const fms::MasterEntry good = master_entry(*fms::find_connection(7), 8);
+  const auto attempt = [](const fms::MasterEntry& entry) {
     FmsBench fresh;
-    const FmsEnd end = fresh.server.initiate(0, 7, 2, entry).end;
-    EXPECT_EQ(fresh.server.is_open(7), end == FmsEnd::Positive);
+    const fms::End end = fresh.server.initiate(0, 7, 2, entry).end;
+    EXPECT_EQ(fresh.server.is_open(7), end == fms::End::Positive);
     return end;
   };
-  FmsMasterEntry wrong = good;
-  wrong.features = FmsFeatures(0x803310000000);  // wants event notification
-  EXPECT_EQ(attempt(wrong), FmsEnd::Error);
+  fms::MasterEntry wrong = good;
+  wrong.features = fms::Features(0x803310000000);  // wants event notification
+  EXPECT_EQ(attempt(wrong), fms::End::Error);
   wrong = good;
   wrong.pdu.receive_low = 240;
-  EXPECT_EQ(attempt(wrong), FmsEnd::Error);
+  EXPECT_EQ(attempt(wrong), fms::End::Error);
   wrong = good;
   wrong.pdu.send_low = 242;
-  EXPECT_EQ(attempt(wrong), FmsEnd::Error);
+  EXPECT_EQ(attempt(wrong), fms::End::Error);
   wrong = good;
   wrong.pdu.send_high = 1;
-  EXPECT_EQ(attempt(wrong), FmsEnd::Error);
+  EXPECT_EQ(attempt(wrong), fms::End::Error);
   wrong = good;
-  wrong.features = FmsFeatures(0x002000000000);  // fewer services are allowed
-  EXPECT_EQ(attempt(wrong), FmsEnd::Positive);
+  wrong.features = fms::Features(0x002000000000);  // fewer services are allowed
+  EXPECT_EQ(attempt(wrong), fms::End::Positive);
 }
 
 TEST(FmsServices, InitiateTwiceAborts) {
   PROVES("FMS-SVC-04", "FMS-SVC-05");
   FmsBench bench;
-  EXPECT_EQ(bench.open(7).end, FmsEnd::Positive);
-  EXPECT_EQ(bench.open(7).end, FmsEnd::Aborted);
+  EXPECT_EQ(bench.open(7).end, fms::End::Positive);
+  EXPECT_EQ(bench.open(7).end, fms::End::Aborted);
   EXPECT_EQ(bench.read(1025), "Abort");
-  EXPECT_EQ(bench.open(7).end, FmsEnd::Positive);
+  EXPECT_EQ(bench.open(7).end, fms::End::Positive);
   EXPECT_EQ(bench.read(1025), "00 00 01 00");
   bench.server.abort(7);  // of the master: no answer, and no connection
   EXPECT_FALSE(bench.server.is_open(7));
-  EXPECT_EQ(bench.open(2).end, FmsEnd::Positive);
+  EXPECT_EQ(bench.open(2).end, fms::End::Positive);
   EXPECT_TRUE(bench.server.expire(bench.now + 30 * kSecond, 2));  // of the slave, by its watch
   EXPECT_FALSE(bench.server.is_open(2));
 }
@@ -352,11 +353,11 @@ TEST(FmsServices, WhatEndsAConnection) {
   EXPECT_EQ(bench.read(1025), "Abort") << "never opened";
   bench.open(7);
   bench.open(8);
-  EXPECT_EQ(bench.server.request(0, 7, {FmsService::Read, 1025, {}}), std::nullopt);
+  EXPECT_EQ(bench.server.request(0, 7, {fms::Service::Read, 1025, {}}), std::nullopt);
   EXPECT_TRUE(bench.server.busy());
   EXPECT_EQ(bench.server.response(0, 7), std::nullopt) << "not at once";
   EXPECT_EQ(bench.server.response(kSecond, 8), std::nullopt) << "nothing was asked there";
-  EXPECT_EQ(bench.server.request(0, 7, {FmsService::Read, 1025, {}})->end, FmsEnd::Aborted);
+  EXPECT_EQ(bench.server.request(0, 7, {fms::Service::Read, 1025, {}})->end, fms::End::Aborted);
   EXPECT_FALSE(bench.server.is_open(7));
   EXPECT_TRUE(bench.server.is_open(8));
   EXPECT_FALSE(bench.server.busy());
@@ -368,59 +369,59 @@ TEST(FmsServices, WhatEndsAConnection) {
   EXPECT_FALSE(bench.server.is_open(7));
   // One whose control interval is over.
   bench.open(2);
-  EXPECT_EQ(bench.server.request(bench.now + 30 * kSecond, 2, {FmsService::Read, 1025, {}})->end,
-            FmsEnd::Aborted);
+  EXPECT_EQ(bench.server.request(bench.now + 30 * kSecond, 2, {fms::Service::Read, 1025, {}})->end,
+            fms::End::Aborted);
   EXPECT_FALSE(bench.server.is_open(2));
-  const FmsMasterEntry good = master_entry(*find_fms_connection(7), 8);
-  FmsMasterEntry wrong = good;
+  const fms::MasterEntry good = master_entry(*fms::find_connection(7), 8);
+  fms::MasterEntry wrong = good;
   wrong.pdu.receive_low = 240;
   EXPECT_EQ(bench.server.initiate(0, 7, 2, wrong).error, (ReturnCode{0, 1, 0}));
   wrong = good;
   wrong.rsap = 24;
   EXPECT_EQ(bench.server.initiate(0, 7, 2, wrong).error, (ReturnCode{0, 2, 0}));
-  EXPECT_EQ(bench.server.initiate(0, 99, 2, good).end, FmsEnd::Rejected);
+  EXPECT_EQ(bench.server.initiate(0, 99, 2, good).end, fms::End::Rejected);
 }
 
 TEST(FmsServices, WhatIsThereAndWhatNot) {
   PROVES("FMS-SVC-01", "FMS-SVC-06");
   FmsBench bench;
   bench.open(8);
-  const std::set<FmsService> answered{
-      FmsService::Identify, FmsService::GetOvShort, FmsService::GetOvLong,    FmsService::Status,
-      FmsService::Read,     FmsService::Write,      FmsService::PhysicalRead, FmsService::PhysicalWrite};
-  const FmsService kAll[] = {
-#define FMS_SERVICE(name, feature, confirmed, text) FmsService::name,
-#include "runtime/bus/profibus/fms_services.def"
+  const std::set<fms::Service> answered{
+      fms::Service::Identify, fms::Service::GetOvShort, fms::Service::GetOvLong,    fms::Service::Status,
+      fms::Service::Read,     fms::Service::Write,      fms::Service::PhysicalRead, fms::Service::PhysicalWrite};
+  const fms::Service kAll[] = {
+#define FMS_SERVICE(name, feature, confirmed, number, of_object, text) fms::Service::name,
+#include "runtime/bus/profibus/fms/services.def"
   };
-  for (const FmsService service : kAll) {
-    if (service == FmsService::Initiate || service == FmsService::Abort) continue;  // calls of their own
-    const FmsResponse response = bench.ask(8, service, 1025, hex("00 00 09 50"));
-    EXPECT_EQ(response.end != FmsEnd::Rejected, answered.count(service) == 1)
-        << fms_service_type(service).text;
+  for (const fms::Service service : kAll) {
+    if (service == fms::Service::Initiate || service == fms::Service::Abort) continue;  // calls of their own
+    const fms::Response response = bench.ask(8, service, 1025, hex("00 00 09 50"));
+    EXPECT_EQ(response.end != fms::End::Rejected, answered.count(service) == 1)
+        << fms::service_type(service).text;
     EXPECT_TRUE(bench.server.is_open(8));
   }
-  EXPECT_EQ(bench.ask(8, FmsService::AcknowledgeEvent).end, FmsEnd::Rejected);
-  EXPECT_EQ(bench.ask(8, FmsService::AlterEvent).end, FmsEnd::Rejected);
+  EXPECT_EQ(bench.ask(8, fms::Service::AcknowledgeEvent).end, fms::End::Rejected);
+  EXPECT_EQ(bench.ask(8, fms::Service::AlterEvent).end, fms::End::Rejected);
 }
 
 TEST(FmsServices, IdentifyAndStatus) {
   PROVES("FMS-SVC-07", "FMS-SVC-09");
   FmsBench bench;
   bench.open(7);
-  EXPECT_EQ(bench.ask(7, FmsService::Identify).end, FmsEnd::Positive);
+  EXPECT_EQ(bench.ask(7, fms::Service::Identify).end, fms::End::Positive);
   EXPECT_EQ(bench.server.identity().vendor, "SEW-Eurodrive GmbH & Co");
   EXPECT_EQ(bench.server.identity().model, "MOVITRAC");
   EXPECT_TRUE(std::regex_match(std::string(bench.server.identity().revision), std::regex("821[0-9]{6}")));
-  EXPECT_EQ(bench.ask(7, FmsService::Status).data.size(), 2U);  // logical and physical state, nothing else
+  EXPECT_EQ(bench.ask(7, fms::Service::Status).data.size(), 2U);  // logical and physical state, nothing else
 }
 
 TEST(FmsServices, GetOvShortAndLong) {
   PROVES("FMS-SVC-08");
   FmsBench bench;
   bench.open(7);
-  const FmsObject expected{1025, 4, FmsAccess::All, "T11 ramp UP"};
-  EXPECT_EQ(bench.ask(7, FmsService::GetOvShort, 1025).object, expected);
-  EXPECT_EQ(bench.ask(7, FmsService::GetOvLong, 1025).object, expected);
+  const fms::Object expected{1025, 4, fms::Access::All, "T11 ramp UP"};
+  EXPECT_EQ(bench.ask(7, fms::Service::GetOvShort, 1025).object, expected);
+  EXPECT_EQ(bench.ask(7, fms::Service::GetOvLong, 1025).object, expected);
 }
 
 TEST(FmsServices, ReadWriteAndTheInvertersReturnCodes) {
@@ -431,7 +432,7 @@ TEST(FmsServices, ReadWriteAndTheInvertersReturnCodes) {
   EXPECT_EQ(bench.read(1025), "00 00 09 50");
   EXPECT_EQ(bench.write(1025, "99 99 99 99"), "error 08 00 00 15");
   const auto values = bench.drive.values;
-  EXPECT_EQ(bench.ask(7, FmsService::PhysicalWrite, 0, hex("01 02")).end, FmsEnd::Error);
+  EXPECT_EQ(bench.ask(7, fms::Service::PhysicalWrite, 0, hex("01 02")).end, fms::End::Error);
   EXPECT_EQ(bench.drive.values, values);
 }
 
@@ -443,66 +444,66 @@ TEST(FmsConnections, TheList) {
                             "4 MSZY_SI O 22 All All 0 0 1 0 3000", "5 MSZY_SI O 23 All All 0 0 1 0 3000",
                             "6 MSAZ_SI O 24 All All 0 1 1 0 0",    "7 MSAZ O 25 All All 0 1 0 0 0",
                             "8 MSAZ O 26 All All 0 1 0 0 0"};
-  ASSERT_EQ(fms_connections().size(), 7U);
-  for (size_t n = 0; n < 7; ++n) EXPECT_EQ(describe(fms_connections()[n]), kPrinted[n]);
+  ASSERT_EQ(fms::connections().size(), 7U);
+  for (size_t n = 0; n < 7; ++n) EXPECT_EQ(describe(fms::connections()[n]), kPrinted[n]);
   for (const int cref : {0, 1, 9, 10}) {
-    EXPECT_EQ(find_fms_connection(static_cast<uint8_t>(cref)), nullptr);
+    EXPECT_EQ(fms::find_connection(static_cast<uint8_t>(cref)), nullptr);
     FmsBench bench;
-    EXPECT_NE(bench.server.initiate(0, static_cast<uint8_t>(cref), 2, {}).end, FmsEnd::Positive);
+    EXPECT_NE(bench.server.initiate(0, static_cast<uint8_t>(cref), 2, {}).end, fms::End::Positive);
   }
   // Open: whichever master comes.
   for (int master = 0; master < 126; ++master) {
     FmsBench bench;
     EXPECT_EQ(
-        bench.server.initiate(0, 7, static_cast<uint8_t>(master), master_entry(*find_fms_connection(7), 8))
+        bench.server.initiate(0, 7, static_cast<uint8_t>(master), master_entry(*fms::find_connection(7), 8))
             .end,
-        FmsEnd::Positive);
+        fms::End::Positive);
   }
   // One confirmed service at a time.
   FmsBench bench;
   bench.open(7);
-  EXPECT_FALSE(bench.server.request(0, 7, {FmsService::Read, 1025, {}}).has_value());
+  EXPECT_FALSE(bench.server.request(0, 7, {fms::Service::Read, 1025, {}}).has_value());
   EXPECT_TRUE(bench.server.busy());
-  EXPECT_EQ(bench.server.request(0, 7, {FmsService::Read, 1025, {}})->end, FmsEnd::Aborted);
+  EXPECT_EQ(bench.server.request(0, 7, {fms::Service::Read, 1025, {}})->end, fms::End::Aborted);
   EXPECT_FALSE(bench.server.is_open(7));
   // Sizes: a block fits, 242 octets do not.
   bench.open(7);
-  EXPECT_NE(bench.ask(7, FmsService::Write, 996, Octets(230)).end, FmsEnd::Aborted);
-  EXPECT_NE(bench.ask(7, FmsService::Write, 996, Octets(241)).end, FmsEnd::Aborted);
-  EXPECT_EQ(bench.ask(7, FmsService::Write, 996, Octets(242)).end, FmsEnd::Aborted);
+  EXPECT_NE(bench.ask(7, fms::Service::Write, 996, Octets(230)).end, fms::End::Aborted);
+  EXPECT_NE(bench.ask(7, fms::Service::Write, 996, Octets(241)).end, fms::End::Aborted);
+  EXPECT_EQ(bench.ask(7, fms::Service::Write, 996, Octets(242)).end, fms::End::Aborted);
 }
 
 struct Features {
   uint8_t cref;
-  FmsLinkType type;
+  fms::LinkType type;
   std::string octets;
-  FmsPduSizes pdu;
+  fms::PduSizes pdu;
   bool reads, writes;
 };
 
 TEST(FmsConnections, FeaturesOfEach) {
   PROVES("FMS-CRL-08", "FMS-CRL-09", "FMS-CRL-10");
-  const Features kRows[] = {{2, FmsLinkType::MSZY, "00 00 00 00 20 00", {0, 241, 0, 241}, true, false},
-                            {3, FmsLinkType::MSZY, "00 00 00 00 10 00", {0, 241, 0, 241}, false, true},
-                            {4, FmsLinkType::MSZY_SI, "00 00 10 00 20 00", {241, 241, 0, 241}, true, false},
-                            {5, FmsLinkType::MSZY_SI, "00 00 10 00 10 00", {241, 241, 0, 241}, false, true},
-                            {6, FmsLinkType::MSAZ_SI, "00 00 10 80 33 06", {0, 241, 0, 241}, true, true},
-                            {7, FmsLinkType::MSAZ, "00 00 00 80 33 00", {0, 241, 0, 241}, true, true},
-                            {8, FmsLinkType::MSAZ, "00 00 00 80 33 06", {0, 241, 0, 241}, true, true}};
+  const Features kRows[] = {{2, fms::LinkType::MSZY, "00 00 00 00 20 00", {0, 241, 0, 241}, true, false},
+                            {3, fms::LinkType::MSZY, "00 00 00 00 10 00", {0, 241, 0, 241}, false, true},
+                            {4, fms::LinkType::MSZY_SI, "00 00 10 00 20 00", {241, 241, 0, 241}, true, false},
+                            {5, fms::LinkType::MSZY_SI, "00 00 10 00 10 00", {241, 241, 0, 241}, false, true},
+                            {6, fms::LinkType::MSAZ_SI, "00 00 10 80 33 06", {0, 241, 0, 241}, true, true},
+                            {7, fms::LinkType::MSAZ, "00 00 00 80 33 00", {0, 241, 0, 241}, true, true},
+                            {8, fms::LinkType::MSAZ, "00 00 00 80 33 06", {0, 241, 0, 241}, true, true}};
   for (const Features& row : kRows) {
-    const FmsConnection& connection = *find_fms_connection(row.cref);
+    const fms::Connection& connection = *fms::find_connection(row.cref);
     EXPECT_EQ(connection.type, row.type);
     EXPECT_EQ(text_of(connection.features.octets()), row.octets);
     EXPECT_EQ(connection.pdu, row.pdu);
     FmsBench bench;
-    EXPECT_EQ(bench.open(row.cref).end, FmsEnd::Positive) << int{row.cref};
-    EXPECT_EQ(bench.ask(row.cref, FmsService::Read, 1025).end == FmsEnd::Positive, row.reads);
-    EXPECT_EQ(bench.ask(row.cref, FmsService::Write, 1025, hex("00 00 09 50")).end == FmsEnd::Positive,
+    EXPECT_EQ(bench.open(row.cref).end, fms::End::Positive) << int{row.cref};
+    EXPECT_EQ(bench.ask(row.cref, fms::Service::Read, 1025).end == fms::End::Positive, row.reads);
+    EXPECT_EQ(bench.ask(row.cref, fms::Service::Write, 1025, hex("00 00 09 50")).end == fms::End::Positive,
               row.writes);
-    EXPECT_EQ(bench.ask(row.cref, FmsService::GetOvLong, 1025).end == FmsEnd::Positive, row.cref >= 6);
-    for (const FmsService event :
-         {FmsService::AcknowledgeEvent, FmsService::AlterEvent, FmsService::EventNotification})
-      EXPECT_EQ(bench.ask(row.cref, event).end, FmsEnd::Rejected);
+    EXPECT_EQ(bench.ask(row.cref, fms::Service::GetOvLong, 1025).end == fms::End::Positive, row.cref >= 6);
+    for (const fms::Service event :
+         {fms::Service::AcknowledgeEvent, fms::Service::AlterEvent, fms::Service::EventNotification})
+      EXPECT_EQ(bench.ask(row.cref, event).end, fms::End::Rejected);
   }
 }
 
@@ -510,7 +511,7 @@ TEST(FmsConnections, FeatureBits) {
   PROVES("FMS-CRL-11");
   const auto services = [](uint8_t cref) {
     std::string text;
-    for (const std::string& service : find_fms_connection(cref)->features.services()) text += service + " ";
+    for (const std::string& service : fms::find_connection(cref)->features.services()) text += service + " ";
     return text;
   };
   EXPECT_EQ(services(2), "Read.indication ");
@@ -523,7 +524,7 @@ TEST(FmsConnections, FeatureBits) {
             "Get-OV-long.indication Read.indication Write.indication Phys.-Read.indication "
             "Phys.-Write.indication ");
   std::string master;
-  for (const std::string& service : FmsFeatures(0x803300000000).services()) master += service + " ";
+  for (const std::string& service : fms::Features(0x803300000000).services()) master += service + " ";
   EXPECT_EQ(master, "Get-OV-long.request Read.request Write.request Phys.-Read.request Phys.-Write.request ");
 }
 
@@ -534,7 +535,7 @@ TEST(FmsConnections, WatchedOnes) {
   bench.open(7);
   bench.now = 29'999 * kMillisecond;
   EXPECT_FALSE(bench.server.expire(bench.now, 2));
-  EXPECT_EQ(bench.ask(2, FmsService::Read, 1025).end, FmsEnd::Positive);
+  EXPECT_EQ(bench.ask(2, fms::Service::Read, 1025).end, fms::End::Positive);
   const Time heard = 29'999 * kMillisecond;
   EXPECT_FALSE(bench.server.expire(heard + 30 * kSecond - 1, 2));
   EXPECT_TRUE(bench.server.expire(heard + 30 * kSecond, 2));
@@ -545,15 +546,15 @@ TEST(FmsConnections, WatchedOnes) {
 
 TEST(FmsConnections, EntriesOfAMaster) {
   PROVES("FMS-CRL-15", "FMS-CRL-16", "FMS-CRL-17", "FMS-CRL-18");
-  const FmsConnection& slave = *find_fms_connection(7);
+  const fms::Connection& slave = *fms::find_connection(7);
   // The example as printed.
-  const FmsMasterEntry example{FmsLinkType::MSAZ,          25, 8, {1, 0, 0, 0}, 0, {0, 241, 0, 241},
-                               FmsFeatures(0x803300000000)};
+  const fms::MasterEntry example{fms::LinkType::MSAZ,          25, 8, {1, 0, 0, 0}, 0, {0, 241, 0, 241},
+                               fms::Features(0x803300000000)};
   EXPECT_TRUE(check_master_entry(example, slave).empty());
   EXPECT_EQ(master_entry(slave, 8), example);
   EXPECT_EQ(text_of(example.features.octets()), "80 33 00 00 00 00");
-  FmsMasterEntry wrong = example;
-  wrong.features = FmsFeatures(0x803310000000);
+  fms::MasterEntry wrong = example;
+  wrong.features = fms::Features(0x803310000000);
   EXPECT_EQ(check_master_entry(wrong, slave),
             (std::vector<std::string>{
                 "Event-Notification.request, which the slave does not have as an indication"}));
@@ -567,11 +568,11 @@ TEST(FmsConnections, EntriesOfAMaster) {
   wrong = example;
   wrong.counters.rcc = 1;
   wrong.rsap = 24;
-  wrong.type = FmsLinkType::MSZY;
+  wrong.type = fms::LinkType::MSZY;
   EXPECT_EQ(check_master_entry(wrong, slave).size(), 3U);
   wrong = example;
   wrong.pdu.receive_high = 0;
-  EXPECT_EQ(check_master_entry(wrong, *find_fms_connection(4)).size(), 8U);
+  EXPECT_EQ(check_master_entry(wrong, *fms::find_connection(4)).size(), 8U);
 }
 
 }  // namespace

@@ -58,13 +58,13 @@ TEST(InterfaceCard, FlickersWhileParametersAreAccessed) {
   EXPECT_EQ(bench.leds(), (LedPattern{Light::On, Light::Off}));
   // A block over FMS: as long as the service is under way.
   const Time now = bench.rig.queue.now();
-  FmsServer& fms = bench.card.fms();
-  EXPECT_EQ(fms.initiate(now, 7, 2, master_entry(*find_fms_connection(7), 8)).end, FmsEnd::Positive);
+  fms::Server& fms = bench.card.fms();
+  EXPECT_EQ(fms.initiate(now, 7, 2, master_entry(*fms::find_connection(7), 8)).end, fms::End::Positive);
   const std::vector<BlockEntry> entries(10, BlockEntry{1025, 0x950});
-  EXPECT_FALSE(fms.request(now, 7, {FmsService::Write, 996, encode_block(entries)}).has_value());
+  EXPECT_FALSE(fms.request(now, 7, {fms::Service::Write, 996, encode_block(entries)}).has_value());
   EXPECT_EQ(bench.leds(), (LedPattern{Light::Flicker, Light::Off}));
   bench.rig.run(200 * kMillisecond);
-  EXPECT_EQ(fms.response(bench.rig.queue.now(), 7)->end, FmsEnd::Positive);
+  EXPECT_EQ(fms.response(bench.rig.queue.now(), 7)->end, fms::End::Positive);
   EXPECT_EQ(bench.leds(), (LedPattern{Light::On, Light::Off}));
   // Over the channel of DP.
   bench.outputs("71 00 04 01 00 00 00 00 00 06 05 DC 00 00");

@@ -225,13 +225,13 @@ TEST(Mc31Plant, DiagnosisShowsTheFaultLater) {
   EXPECT_EQ(bench.master().slave(0).view().fault, 47);
 }
 
-profibus::FmsResponse ask(Mc31Plant& bench, profibus::FmsService service, uint16_t index,
+profibus::fms::Response ask(Mc31Plant& bench, profibus::fms::Service service, uint16_t index,
                           const profibus::Octets& data = {}) {
-  profibus::FmsServer& fms = bench.inverter().profibus()->card().fms();
+  profibus::fms::Server& fms = bench.inverter().profibus()->card().fms();
   const uint8_t cref = 7;
   if (!fms.is_open(cref))
     fms.initiate(bench.plant->now(), cref, 2,
-                 profibus::master_entry(*profibus::find_fms_connection(cref), 8));
+                 master_entry(*profibus::fms::find_connection(cref), 8));
   auto response = fms.request(bench.plant->now(), cref, {service, index, data});
   for (int ms = 0; !response && ms < 1000; ++ms) {
     bench.run(bench.plant->now() + kMillisecond);
@@ -241,16 +241,15 @@ profibus::FmsResponse ask(Mc31Plant& bench, profibus::FmsService service, uint16
 }
 
 TEST(Mc31Plant, FmsControlsOrReadsWhatDpSends) {
-  PROVES_BY_CLASSES("FMS-OBJ-09");  // no key, verb or view speaks FMS
-  using profibus::FmsEnd;
-  using profibus::FmsService;
+  using profibus::fms::End;
+  using profibus::fms::Service;
   Mc31Plant alone(unit());
-  EXPECT_EQ(ask(alone, FmsService::Write, 990, hex("00 06 05 DC 00 00")).end, FmsEnd::Positive);
+  EXPECT_EQ(ask(alone, Service::Write, 990, hex("00 06 05 DC 00 00")).end, fms::End::Positive);
   alone.run(3 * kSecond);
   EXPECT_EQ(alone.speed(), 300'000);
   Mc31Plant mixed(unit() + control("cfg = \"F2\"\npo = [6, 1500, 0]\n"));
   mixed.run(kSecond);
-  EXPECT_EQ(text_of(ask(mixed, FmsService::Read, 990).data), "00 06 05 DC 00 00");
+  EXPECT_EQ(text_of(ask(mixed, Service::Read, 990).data), "00 06 05 DC 00 00");
 }
 
 // Off and on: the master finds it again.

@@ -426,7 +426,8 @@ TEST(FrameText, EveryKindOfFrame) {
       {sd2("FF 82 46 3A 3E 20 00"), "2 -> 127 Global_Control, SDN high: Sync, all"},
       {sd2("FF 82 46 3A 3E 0E 01"), "2 -> 127 Global_Control, SDN high: Clear_Data, Unfreeze, groups 01h"},
       {sd2("FF 82 46 3A 3E 20"), "2 -> 127 Global_Control, SDN high: 20"},
-      {sd2("83 82 5D 14 3E 01"), "2 -> 3 access point 20, SRD high, FCB 0: 01"},
+      {sd2("83 82 5D 1E 3E 01"), "2 -> 3 access point 30, SRD high, FCB 0: 01"},
+      {sd2("83 82 5D 14 14 00 91 01 A1 02 04 01"), "2 -> 3 FMS connection 2, SRD high, FCB 0: Read 1025, request 1"},
       {sd2("03 82 5D 3E 01"), "2 -> 3 no access point, SRD high, FCB 0: 01"},
       {sd2("83 02 5D 3C"), "2 -> 3 Slave_Diag, SRD high, FCB 0"},
       {sd2("82 03 08 3E 01"), "3 -> 2 no access point answer, DL: 01"}};

@@ -126,15 +126,17 @@ TEST(SerialMonitoring, MonitoringBeginsWithTheFirstCyclicRequest) {
   EXPECT_EQ(run.station(0).fault(), 43);
 }
 
-// A line whose station changes its rate: the telegram before is answered at 57.6, the next one at 9.6 kbaud.
-// S13 itself is a key of the plant and cannot be changed in a run.
-TEST(SerialMonitoring, ARateThatChanges) {
+// A hand turns S13 while the plant runs: the telegram before is answered at 57.6, the next one at 9.6 kbaud.
+TEST(SerialMonitoring, SwitchS13ActsAtOnce) {
+  PROVES("MDB-RS485-03");
   PlantRun run(bus("x", "baud = 57600\n") + station("a", "mdxb", "rs485_xt = \"x\"\n", "P810 = 1\n"));
   Rs485Line& line = run.plant->all<runtime::SerialBus>()[0]->line();
   HandNode slow(line, "slow", 9'600);
   EXPECT_EQ(line.node_baud(0), 57'600U) << "factory setting";
   EXPECT_EQ(run.ask(0, "02 01 81 00 00").size(), 1U);
-  line.set_baud(0, 9'600);
+  EXPECT_EQ(run.station(0).switch_value(runtime::StationSwitch::S13), 0);
+  EXPECT_EQ(run.station(0).set_switch(runtime::StationSwitch::S13, 1), std::nullopt);
+  EXPECT_EQ(run.station(0).switch_value(runtime::StationSwitch::S13), 1);
   slow.receptions.clear();
   slow.send(telegram("02 01 81 00 00"));
   run.run(100 * kMillisecond);

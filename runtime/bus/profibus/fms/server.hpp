@@ -1,5 +1,5 @@
 // The FMS side of the combislave at service level: typed requests over a connection, answers, Abort and Reject
-// (MOVITRAC 31 PROFIBUS, 4.1 and 4.3). The octets of FMS on the line are not modelled.
+// (MOVITRAC 31 PROFIBUS, 4.1 and 4.3). What they look like on the line is slave_links.hpp.
 #pragma once
 
 #include <cstdint>
@@ -7,63 +7,47 @@
 #include <optional>
 #include <string_view>
 
-#include "runtime/bus/profibus/card.hpp"
-#include "runtime/bus/profibus/fms_connection.hpp"
-#include "runtime/bus/profibus/fms_objects.hpp"
+#include "runtime/bus/profibus/fms/service.hpp"
 
-namespace ipos::profibus {
+namespace ipos::profibus::fms {
 
-struct FmsRequest {
-  FmsService service = FmsService::Read;
-  uint16_t index = 0;
-  Octets data;
-};
-
-enum class FmsEnd : uint8_t { Positive, Error, Rejected, Aborted };
-
-struct FmsResponse {
-  FmsEnd end = FmsEnd::Positive;
-  Octets data;                      // of Read and Status
-  std::optional<FmsObject> object;  // of Get-OV
-  ReturnCode error;                 // class, code and additional of Error
-  std::string_view reason;          // of Rejected and Aborted, for people
-};
-
-struct FmsIdentity {
+struct Identity {
   std::string_view vendor = "SEW-Eurodrive GmbH & Co";
   std::string_view model = "MOVITRAC";
   std::string_view revision =
       "821000010";  // 821XXYYZZ, the system software of the inverter; these digits are ours
 };
 
-class FmsServer {
+class Server {
  public:
   // Ours: what one service of the inverter takes; the card's own objects answer at once.
   static constexpr Time kProcessing = 10 * runtime::kMillisecond;
 
-  FmsServer(FmsObjects& objects, const OptionType& option) : objects_(objects), option_(option) {}
+  Server(ObjectList& objects, bool offered) : objects_(objects), offered_(offered) {}
 
   // A master opens connection `cref`. On an open connection this ends it: both sides start again.
-  FmsResponse initiate(Time now, uint8_t cref, uint8_t master, const FmsMasterEntry& entry);
+  Response initiate(Time now, uint8_t cref, uint8_t master, const MasterEntry& entry);
   void abort(uint8_t cref) { open_.erase(cref); }
   void power_on() { open_.clear(); }
 
   // What comes at once; nothing: response() has it later.
-  std::optional<FmsResponse> request(Time now, uint8_t cref, const FmsRequest& request);
+  std::optional<Response> request(Time now, uint8_t cref, const Request& request);
   // The answer of the confirmed service under way, when it is done. Given once.
-  std::optional<FmsResponse> response(Time now, uint8_t cref);
+  std::optional<Response> response(Time now, uint8_t cref);
 
   // A watched connection on which nothing came for its time is closed; the slave aborts it. True then.
   bool expire(Time now, uint8_t cref);
 
   bool is_open(uint8_t cref) const { return open_.count(cref) != 0; }
-  bool connected() const { return !open_.empty(); }
+  // Something came on a connection: its control interval begins anew.
+  void heard(Time now, uint8_t cref);
+  bool connected(Time now) const;  // a watched connection counts for its time
   bool busy() const;  // a service is under way: the green LED flickers
-  FmsIdentity identity() const { return {}; }
+  Identity identity() const { return {}; }
 
  private:
   struct Pending {
-    FmsResponse response;
+    Response response;
     Time ready;
   };
   struct Open {
@@ -72,11 +56,12 @@ class FmsServer {
     std::optional<Pending> pending;
   };
 
-  Pending carry_out(Time now, const FmsRequest& request);
+  Pending carry_out(Time now, const Request& request);
+  static bool is_over(Time now, uint8_t cref, const Open& open);
 
-  FmsObjects& objects_;
-  const OptionType& option_;
+  ObjectList& objects_;
+  bool offered_;
   std::map<uint8_t, Open> open_;
 };
 
-}  // namespace ipos::profibus
+}  // namespace ipos::profibus::fms
