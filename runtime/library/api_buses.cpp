@@ -233,10 +233,15 @@ ipos_plant_status ipos_plant_fms(ipos_plant* plant, uint32_t bus, uint8_t addres
     std::vector<uint8_t> bytes{address, connection, static_cast<uint8_t>(*wanted), static_cast<uint8_t>(index >> 8),
                                static_cast<uint8_t>(index)};
     bytes.insert(bytes.end(), data, data + length);
-    if (const auto status = perform(plant, session, Act::Fms, bus, 0, std::move(bytes)); status != IPOS_PLANT_OK) return status;
+    // A slave that hears nobody else has to find the rate first: for a while it is asked again (ours).
+    const ipos::runtime::Time joined = running.now() + 2 * ipos::runtime::kSecond;
     std::optional<fms::Done> done;
-    while (!(done = session.instance().fms(bus)->take()) && running.now() < until)
-      running.run_until(std::min(until, running.now() + ipos::runtime::kMillisecond));
+    do {
+      if (const auto status = perform(plant, session, Act::Fms, bus, 0, bytes); status != IPOS_PLANT_OK) return status;
+      while (!(done = session.instance().fms(bus)->take()) && running.now() < until)
+        running.run_until(std::min(until, running.now() + ipos::runtime::kMillisecond));
+    } while (done && done->response.end == fms::End::Aborted &&
+             done->response.reason == static_cast<uint8_t>(fms::Reason::NoAnswer) && running.now() < std::min(joined, until));
     if (!done) return IPOS_PLANT_NOTHING;
     plant->bytes = done->response.data;
     *answer = {static_cast<ipos_plant_fms_end>(done->response.end), done->response.error.packed(), plant->bytes.data(),

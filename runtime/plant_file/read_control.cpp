@@ -77,6 +77,22 @@ void read_control(PlantReader& reader, const toml::table& table) {
   reader.result.plant.controls.push_back(std::move(config));
 }
 
+// A station whose switch is at FMS takes longer to answer: the masters of its line wait longer (the time is ours).
+void lengthen_slots(PlantFile& plant) {
+  const auto lengthen = [&plant](const std::string& bus, profibus::MasterSettings& settings) {
+    const bool mixed = std::any_of(plant.stations.begin(), plant.stations.end(), [&](const StationConfig& station) {
+      return station.profibus.fms_switch && station.profibus.bus.bus == bus;
+    });
+    const auto line = std::find_if(plant.buses.begin(), plant.buses.end(), [&](const BusConfig& one) { return one.name == bus; });
+    if (!mixed || line == plant.buses.end()) return;
+    if (const profibus::BaudRate* rate = profibus::find_baud_rate(line->baud)) settings.slot = rate->slot + rate->fms_min_tsdr;
+  };
+  for (ControlConfig& control : plant.controls) {
+    if (auto* const dp = std::get_if<ProfibusMasterConfig>(&control.kind)) lengthen(dp->bus, dp->settings);
+    if (auto* const fms = std::get_if<FmsMasterConfig>(&control.kind)) lengthen(fms->bus, fms->settings);
+  }
+}
+
 }  // namespace
 
 void read_controls(PlantReader& reader, const toml::table& root) {
@@ -86,6 +102,7 @@ void read_controls(PlantReader& reader, const toml::table& root) {
   std::stable_sort(controls.begin(), controls.end(), [](const ControlConfig& a, const ControlConfig& b) {
     return a.place.line < b.place.line;
   });
+  lengthen_slots(reader.result.plant);
 }
 
 }  // namespace ipos::runtime

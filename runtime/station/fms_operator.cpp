@@ -6,8 +6,20 @@
 
 namespace ipos::runtime {
 
+namespace {
+
+// Long enough for a slave whose switch is at FMS.
+profibus::MasterSettings settings_of(const profibus::Line& line, uint8_t address) {
+  const profibus::BaudRate& rate = *profibus::find_baud_rate(line.baud());
+  profibus::MasterSettings settings{address};
+  settings.slot = rate.slot + rate.fms_min_tsdr;
+  return settings;
+}
+
+}  // namespace
+
 FmsOperator::FmsOperator(EventQueue& queue, uint32_t source, profibus::Line& line, uint8_t address)
-    : address_(address), master_(queue, source, line, "FMS operator", profibus::MasterSettings{address}, nullptr) {
+    : address_(address), master_(queue, source, line, "FMS operator", settings_of(line, address), nullptr) {
   master_.start();
 }
 

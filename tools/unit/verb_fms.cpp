@@ -5,6 +5,7 @@
 #include <charconv>
 #include <functional>
 #include <memory>
+#include <utility>
 
 #include "runtime/plant_file/bytes_text.hpp"
 #include "runtime/station/dp_slaves.hpp"
@@ -31,6 +32,8 @@ struct FmsFlags {
 };
 
 constexpr runtime::Time kLimit = 60 * runtime::kSecond;  // of virtual time, for a service in a plant
+// A slave that hears nobody else has to find the rate first (ours).
+constexpr runtime::Time kJoining = 2 * runtime::kSecond;
 
 using Ask = std::function<fms::Response(const fms::Request&)>;
 
@@ -50,11 +53,18 @@ Ask ask_in_plant(const FmsFlags& flags, const fms::Connection& connection) {
     auto& line = *as<runtime::ProfibusBus>(plant->find_bus(bus));
     runtime::FmsOperator& hand = runtime::fms_operator_of(*plant, line);
     hand.ask(address, connection, request);
-    for (const runtime::Time end = plant->now() + kLimit; plant->now() < end;) {
+    const runtime::Time begin = plant->now();
+    fms::Response last = fms::Response::aborted(fms::Reason::NoAnswer);
+    while (plant->now() < begin + kLimit) {
       plant->run_until(plant->now() + runtime::kMillisecond);
-      if (auto done = hand.take()) return done->response;
+      const auto done = hand.take();
+      if (!done) continue;
+      last = done->response;
+      const bool unheard = last.end == fms::End::Aborted && last.reason == static_cast<uint8_t>(fms::Reason::NoAnswer);
+      if (!unheard || plant->now() >= begin + kJoining) break;
+      hand.ask(address, connection, request);
     }
-    return fms::Response::aborted(fms::Reason::NoAnswer);
+    return last;
   };
 }
 
@@ -72,12 +82,17 @@ Ask ask_at_port(const FmsFlags& flags, const fms::Connection& connection) {
   auto open = std::make_shared<fms::ClientLink>(connection, fms::master_entry(connection, slave));
   return [line, open, slave](const fms::Request& request) {
     open->ask(request);
-    for (;;) {
+    for (bool again = true;;) {
       auto data = open->next(line->now());
       if (!data) return fms::Response::aborted(fms::Reason::NoAnswer);
       const DpReply reply = line->fms(slave, open->connection().lsap, std::move(*data));
       const auto done = !reply.answered || reply.refused ? open->unanswered() : open->answered(line->now(), reply.data);
-      if (done) return done->response;
+      if (!done) continue;
+      // Somebody went away and left it open; that is an abort, and the next try opens it (MOVITRAC 31 PROFIBUS, 4.1.1).
+      const bool was_open = done->response.end == fms::End::Aborted &&
+                            done->response.reason == static_cast<uint8_t>(fms::Reason::WasOpen);
+      if (!was_open || !std::exchange(again, false)) return done->response;
+      open->ask(request);
     }
   };
 }
@@ -144,13 +159,15 @@ int run_fms(const FmsFlags& flags) {
   for (const fms::Request& request : requests) {
     const fms::Response response = ask(request);
     if (response.end == fms::End::Positive) {
-      if (lists) return print_list();
-      fmt::print("{}\n", fms::describe(response));
+      if (lists) result = print_list();
+      if (!lists) fmt::print("{}\n", fms::describe(response));
     } else {
       fmt::print(stderr, "ipos: {}: {}: {}\n", flags.station, fms::describe(request), fms::describe(response));
       result = kFindings;
     }
   }
+  // At a port the unit goes on: it gets its connection back.
+  if (!is_plant(flags.where) && result == kGood) ask({fms::Service::Abort, 0, {}});
   return result;
 }
 

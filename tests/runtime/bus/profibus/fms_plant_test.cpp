@@ -22,15 +22,19 @@ const std::string kDp = "[[control]]\nname = \"plc\"\nprofibus = \"dp\"\n[[contr
 const std::string kRejected = "rejected: the service is not there on this connection";
 
 struct FmsPlant : DpPlant {
-  explicit FmsPlant(const std::string& text) : DpPlant(text) { run(1500 * kMillisecond); }
+  explicit FmsPlant(const std::string& text) : DpPlant(text) {
+    hand();  // joins the ring, and a slave that hears nobody else finds the rate
+    run(1500 * kMillisecond);
+  }
+  runtime::FmsOperator& hand() {
+    return runtime::fms_operator_of(*plant, *runtime::as<runtime::ProfibusBus>(plant->find_bus("dp")));
+  }
 
   fms::Response done(Service service, uint16_t index = 0, const std::string& data = "", uint8_t cref = 7) {
-    auto& bus = *runtime::as<runtime::ProfibusBus>(plant->find_bus("dp"));
-    runtime::FmsOperator& hand = runtime::fms_operator_of(*plant, bus);
-    hand.ask(8, *fms::find_connection(cref), {service, index, hex(data)});
+    hand().ask(8, *fms::find_connection(cref), {service, index, hex(data)});
     for (int n = 0; n < 10'000; ++n) {
       run_on(kMillisecond);
-      if (auto one = hand.take()) return one->response;
+      if (auto one = hand().take()) return one->response;
     }
     return fms::Response::aborted(fms::Reason::NoAnswer);
   }
@@ -108,6 +112,7 @@ TEST(FmsPlant, LinkToTheInverter) {
   bench.run_on(100 * kMillisecond);
   bench.plant->set_power("inv", true);
   bench.run_on(2 * kSecond);
+  EXPECT_EQ(bench.read(1025), "aborted: the connection is not open") << "of before";
   EXPECT_EQ(bench.read(1025), "00 00 09 50") << "only power-off clears a lasting one";
 }
 
@@ -168,6 +173,7 @@ TEST(FmsPlant, MinTsdr) {
   bench.run_on(100 * kMillisecond);
   bench.plant->set_power("inv", true);
   bench.run_on(2 * kSecond);
+  EXPECT_EQ(bench.read(994), "aborted: the connection is not open") << "of before";
   EXPECT_EQ(bench.read(994), by_switch);
 }
 
@@ -332,8 +338,7 @@ TEST(FmsPlant, LampsOfMixedMode) {
   EXPECT_EQ(bench.lamps(), (profibus::LedPattern{Light::On, Light::On})) << "DP alone, in mixed mode";
   EXPECT_EQ(bench.ask(Service::Initiate), "done");
   EXPECT_EQ(bench.lamps(), (profibus::LedPattern{Light::On, Light::Off}));
-  auto& bus = *runtime::as<runtime::ProfibusBus>(bench.plant->find_bus("dp"));
-  runtime::fms_operator_of(*bench.plant, bus).ask(8, *fms::find_connection(7), {Service::Write, 996, hex(block("00 02 04 01 00 00 09 50 04 01 00 00 09 50"))});
+  bench.hand().ask(8, *fms::find_connection(7), {Service::Write, 996, hex(block("00 02 04 01 00 00 09 50 04 01 00 00 09 50"))});
   int flickers = 0;
   for (int n = 0; n < 20; ++n) {
     bench.run_on(kMillisecond);
