@@ -31,7 +31,8 @@ enum class Act : uint8_t {
   NodeRate,      // number: bus; value: bit/s
   NodeState,     // number: bus; value: runtime::ErrorState
   NodeDiscards,  // number: bus; value: 1: what loses the arbitration is given up
-  Fms,         // number: bus; bytes: address, connection, service, index high and low, data
+  // Of FmsOperator
+  Fms,           // number: bus; bytes: address, connection, service, index high and low, data
 };
 inline constexpr Act kLastAct = Act::Fms;
 
