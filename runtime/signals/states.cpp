@@ -51,10 +51,14 @@ void add_states(Collector& out) {
 
 std::optional<Signal> state_signal(Owner owner, std::string_view name) {
   const int row = find_state(name);
-  if (row < 0) return std::nullopt;
   Collector out(owner);
-  add(out, kStates[row]);
-  return std::move(out.found.front());
+  if (row >= 0)
+    add(out, kStates[row]);
+  else
+    add_card(out);
+  for (Signal& signal : out.found)
+    if (signal.own_name() == name) return std::move(signal);
+  return std::nullopt;
 }
 
 void add_states_beside_drive(Collector& out) {
