@@ -41,7 +41,7 @@ export async function open(path: string): Promise<void> {
 }
 
 function isPlant(path: string): boolean {
-  return path.endsWith(".toml") && !path.endsWith(".test.toml");
+  return /(?<!\.test|\.campaign)\.toml$/.test(path);
 }
 
 export function canBeOpened(path: string): boolean {
