@@ -460,7 +460,7 @@ TEST_F(ServingDp, RowsByAddressesAndAccessPoints) {
 // Faults of a PROFIBUS line strike frames of one sender or of all.
 TEST_F(ServingDp, FaultsComeAndGo) {
   const Json bus = good({{"do", "plant"}})["plant"]["buses"][0];
-  EXPECT_EQ(bus["faults"], Json({"lost", "cut", "parity", "noise", "collision"}));
+  EXPECT_EQ(bus["faults"], Json({"lost", "cut", "parity", "noise", "collision", "swap", "link", "card", "card_flash"}));
   EXPECT_EQ(
       bus["fault_rules"]["cut"],
       (Json{{"text", "cuts a frame short"}, {"station", "may"}, {"rate", true}, {"identifier", false}}));
