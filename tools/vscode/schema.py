@@ -92,7 +92,8 @@ class Table:
         return f"[[{self.name}]]" if self.many else f"[{self.name}]"
 
     def needs(self):
-        return r"an? \[\[\w+\]\] needs (\w+) = " if self.many else re.escape(self.head()) + r" needs (\w+) = "
+        head = r"an? \[\[\w+\]\]" if self.many else re.escape(self.head())
+        return head + r" needs (\w+) = (?!.*, or )"  # of two that will do, none is required
 
     def ask(self, form, row):
         text = self.before + self.head() + "\n" + form + row + "\n"
