@@ -134,9 +134,11 @@ class Forms {
   size_t object_begin() const {
     size_t n = out_.size() - 1;
     while (true) {
-      if (out_[n].kind == TokenKind::RightBracket)
-        while (n > 0 && out_[n].kind != TokenKind::LeftBracket) --n;
-      if (out_[n].kind == TokenKind::LeftBracket && n > 0) --n;
+      for (int level = 0; n > 0; --n) {  // behind its index, to its name
+        if (out_[n].kind == TokenKind::RightBracket) ++level;
+        if (out_[n].kind == TokenKind::LeftBracket) --level;
+        if (level == 0 && out_[n].kind != TokenKind::LeftBracket) break;
+      }
       if (n < 2 || out_[n - 1].kind != TokenKind::Dot) return n;
       n -= 2;
     }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/fmi/can_operations.hpp"
+#include "tests/fmi/event_mode.hpp"
 #include "tests/fmi/functions.hpp"
 
 namespace ipos::tests {
@@ -122,19 +123,9 @@ class Node {
     return {reinterpret_cast<const char*>(out), size};
   }
   void give(const std::string& operations) {
-    if (operations.empty()) return;
-    const uint32_t clock = first_ + 2, data = first_;
-    const bool active = true;
-    const size_t size = operations.size();
-    const auto* in = reinterpret_cast<const uint8_t*>(operations.data());
-    EXPECT_EQ(fmi3SetClock(c_, &clock, 1, &active), kOk);
-    EXPECT_EQ(fmi3SetBinary(c_, &data, 1, &size, &in, 1), kOk);
+    if (!operations.empty()) give_operations(c_, first_ + 2, first_, operations);
   }
-  void update() {
-    bool flags[5];
-    double next = 0;
-    EXPECT_EQ(fmi3UpdateDiscreteStates(c_, &flags[0], &flags[1], &flags[2], &flags[3], &flags[4], &next), kOk);
-  }
+  void update() { update_states(c_); }
   bool step(double from, double length) {
     bool event = false, ends = false, early = false;
     double reached = 0;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "tests/fmi/event_mode.hpp"
 #include "tests/fmi/functions.hpp"
 
 namespace ipos::tests {
@@ -55,18 +56,9 @@ class Line {
   uint32_t reference(uint32_t node, uint32_t member) const { return first_ + (node - 1) * 5 + member; }
   // In event mode. Nodes count from 1, as in the names.
   void give(uint32_t node, const std::string& operations) {
-    const uint32_t clock = reference(node, 2), data = reference(node, 0);
-    const bool active = true;
-    const size_t size = operations.size();
-    const auto* in = reinterpret_cast<const uint8_t*>(operations.data());
-    EXPECT_EQ(fmi3SetClock(c_, &clock, 1, &active), kOk);
-    EXPECT_EQ(fmi3SetBinary(c_, &data, 1, &size, &in, 1), kOk);
+    give_operations(c_, reference(node, 2), reference(node, 0), operations);
   }
-  void update() {
-    bool flags[5];
-    double next = 0;
-    EXPECT_EQ(fmi3UpdateDiscreteStates(c_, &flags[0], &flags[1], &flags[2], &flags[3], &flags[4], &next), kOk);
-  }
+  void update() { update_states(c_); }
   struct Known {
     int64_t ns;
     int known;  // 0 not yet, 1 unchanged, 2 changed

@@ -189,6 +189,44 @@ TEST(Fms, OfAPlant) {
   }
 }
 
+// A slave answers on a connection to the master alone that has opened it.
+TEST(Fms, AConnectionThatAMasterOfThePlantHas) {
+  TemporaryFolder folder;
+  folder.write("plant.toml", std::string(kLine) + kStations +
+                                 "[[control]]\nname = \"panel\"\nkind = \"fms\"\nprofibus = \"dp\"\n[[control.slave]]\naddress = 8\n"
+                                 "[[control.slave.request]]\nat = \"300ms\"\nread = 991\n");
+  const CommandResult held = run_ipos({"fms", "plant.toml", "belt", "status"}, folder.path());
+  EXPECT_EQ(held.exit_code, 1);
+  EXPECT_TRUE(contains(held.err, "belt: nobody answers; 'panel', a master of the plant, has connection 7: --connection takes another one"))
+      << held.err;
+  EXPECT_EQ(run_ipos({"fms", "plant.toml", "belt", "status", "--connection", "6"}, folder.path()).out, "00 00\n");
+}
+
+// Switches as steps of a test file: the address acts from the next power-on, and the master then looks for its slave in vain.
+TEST(Fms, SwitchesOfATestFile) {
+  TemporaryFolder folder;
+  folder.write("plant.toml", std::string(kLine) + kStations + "[[control]]\nname = \"plc\"\nprofibus = \"dp\"\n[[control.slave]]\naddress = 8\n"
+                                                              "cfg = \"F2\"\npo = [6, 1500, 0]\n");
+  const auto tested = [&](const std::string& name, const std::string& set) {
+    folder.write("s.test.toml",
+                 "plant = \"plant.toml\"\n[[step]]\nuntil = \"3s\"\n[[step]]\nstation = \"belt\"\nswitch = \"" + name + "\"\nset = " + set +
+                     "\n[[expect]]\nstation = \"belt\"\nsignal = \"BUS_FAULT\"\nat = \"4s\"\nequals = 0\n"
+                     "[[step]]\nstation = \"belt\"\npower = \"off\"\n[[step]]\nwait = \"100ms\"\n[[step]]\nstation = \"belt\"\npower = \"on\"\n"
+                     "[[expect]]\nstation = \"belt\"\nsignal = \"BUS_FAULT\"\nat = \"9s\"\nequals = 1\n");
+    return run_ipos({"test", "s.test.toml"}, folder.path());
+  };
+  const CommandResult moved = tested("profibus_address", "10");
+  EXPECT_EQ(moved.exit_code, 0) << moved.out;
+  EXPECT_EQ(tested("profibus_address", "8").exit_code, 1) << "the same address: it is found again";
+  for (const auto& [name, set, text] : {std::tuple("profibus_adress", "9", "is no switch; known are fms_switch, profibus_address"),
+                                        std::tuple("profibus_address", "128", "profibus_address is 0 to 127"),
+                                        std::tuple("s13", "2", "s13 is 0 to 1"), std::tuple("fms_switch", "\"on\"", "set must be a whole number")}) {
+    const CommandResult wrong = tested(name, set);
+    EXPECT_NE(wrong.exit_code, 0) << name;
+    EXPECT_TRUE(contains(wrong.out + wrong.err, text)) << wrong.out << wrong.err;
+  }
+}
+
 TEST_F(ProfibusTools, WrongUseAndRefusalsSayWhy) {
   const RunningLine line(folder_);
   const CommandResult nobody = param("get", 30, {"P120"});

@@ -9,6 +9,7 @@
 
 #include "runtime/plant_file/bytes_text.hpp"
 #include "runtime/station/dp_slaves.hpp"
+#include "runtime/station/fms_control.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/verbs.hpp"
 #include "tools/input/plant_input.hpp"
@@ -37,6 +38,19 @@ constexpr runtime::Time kJoining = 2 * runtime::kSecond;
 
 using Ask = std::function<fms::Response(const fms::Request&)>;
 
+bool is_unheard(const fms::Response& response) {
+  return response.end == fms::End::Aborted && response.reason == static_cast<uint8_t>(fms::Reason::NoAnswer);
+}
+
+// A slave answers on a connection to the master alone that has opened it. Null: no master of the plant has this one.
+const runtime::FmsControl* other_master(const runtime::Plant& plant, std::string_view bus, uint8_t slave,
+                                        const fms::Connection& connection) {
+  for (const runtime::FmsControl* const master : plant.all<runtime::FmsControl>())
+    for (const runtime::FmsMasterConfig::Link& link : master->settings().links)
+      if (master->settings().bus == bus && link.address == slave && link.connection == &connection) return master;
+  return nullptr;
+}
+
 // The plant runs until the time, and on until each answer is there.
 Ask ask_in_plant(const FmsFlags& flags, const fms::Connection& connection) {
   std::shared_ptr<runtime::Plant> plant = make_plant(read_plant_input(flags.where, flags.compile), runtime::FileUse::Look);
@@ -49,7 +63,7 @@ Ask ask_in_plant(const FmsFlags& flags, const fms::Connection& connection) {
   plant->run_until(runtime::parse_duration(flags.at));
   const std::string bus = (*found)->config().profibus.bus.bus;
   const uint8_t address = port->card().station().slave().address();
-  return [plant, &connection, bus, address](const fms::Request& request) {
+  return [plant, &connection, bus, address, station = flags.station](const fms::Request& request) {
     auto& line = *as<runtime::ProfibusBus>(plant->find_bus(bus));
     runtime::FmsOperator& hand = runtime::fms_operator_of(*plant, line);
     hand.ask(address, connection, request);
@@ -60,10 +74,12 @@ Ask ask_in_plant(const FmsFlags& flags, const fms::Connection& connection) {
       const auto done = hand.take();
       if (!done) continue;
       last = done->response;
-      const bool unheard = last.end == fms::End::Aborted && last.reason == static_cast<uint8_t>(fms::Reason::NoAnswer);
-      if (!unheard || plant->now() >= begin + kJoining) break;
+      if (!is_unheard(last) || plant->now() >= begin + kJoining) break;
       hand.ask(address, connection, request);
     }
+    if (const runtime::FmsControl* const other = other_master(*plant, bus, address, connection); other != nullptr && is_unheard(last))
+      throw Failure(kFindings, fmt::format("{}: nobody answers; '{}', a master of the plant, has connection {}: --connection takes another one",
+                                           station, other->name(), connection.cref));
     return last;
   };
 }

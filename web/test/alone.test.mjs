@@ -56,7 +56,7 @@ test("tests of the open plant run, and an archive of its files can be opened aga
   await moves(page);
   await page.getByRole("button", { name: "Files" }).click();
   await page.getByRole("button", { name: "Test all" }).click();
-  await page.getByRole("status", { name: "Test report" }).filter({ hasText: "1 test, 1 passed" }).waitFor();
+  await page.getByRole("status", { name: "Test report" }).filter({ hasText: "4 tests, 4 passed" }).waitFor();
   const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "Save archive" }).click()]);
   assert.equal(download.suggestedFilename(), "hoist.zip");
   const archive = await download.path();
@@ -81,7 +81,7 @@ test("files and settings are there after a reload", options, async () => {
   await page.waitForFunction(() => document.title.includes("hoist.toml"));
   await page.getByRole("button", { name: "Files" }).click();
   await page.getByRole("button", { name: "hoist/hoist.toml" }).waitFor();
-  assert.equal(await page.getByRole("list", { name: "Plants" }).getByRole("listitem").count(), 1);
+  assert.equal(await page.getByRole("list", { name: "Plants" }).getByRole("listitem").count(), 2);  // hoist.toml and real.toml, not the campaign
   await context.close();
 });
 

@@ -72,7 +72,7 @@ test("a program is edited, built and restarted, and is there after a reload", op
 test("the tests of the folder run, and a link opens as a plant of its own", options, async () => {
   await page.click("button", "Files");
   await page.click("button", "Test all");
-  await page.until("no report", () => /1 test, 1 passed/.test(document.querySelector('[aria-label="Test report"]')?.textContent ?? ""));
+  await page.until("no report", () => /4 tests, 4 passed/.test(document.querySelector('[aria-label="Test report"]')?.textContent ?? ""));
   await page.click("button", "Close");
   await page.click("button", "Share");
   const link = await page.until("no link", () => document.querySelector('input[aria-label="Link"]')?.value);

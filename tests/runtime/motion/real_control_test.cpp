@@ -395,6 +395,16 @@ TEST(LoadShape, AFanRunsDownByAHyperbola) {
   }
 }
 
+// The axis is enabled, and has this active current from the next millisecond on.
+AxisOrder torque_jump(Axis& axis, int32_t current) {
+  AxisOrder order = ramp_to(0);
+  after(axis, order, 1);
+  order.command = AxisCommand::Torque;
+  order.speed_limit = 1'500'000;
+  order.current = current;
+  return order;
+}
+
 // A jump of torque on the first of two free masses: the mean speed goes up evenly, and the twist swings with
 // w = sqrt(k (1/J1 + 1/J2)) about M J2 / (J1 + J2) / k.
 TEST(SecondMass, TwoMassesSwingByTheClosedForm) {
@@ -404,11 +414,7 @@ TEST(SecondMass, TwoMassesSwingByTheClosedForm) {
   m.second_inertia = 0.01;
   m.stiffness = 30;
   Axis axis(m);
-  AxisOrder order = ramp_to(0);
-  after(axis, order, 1);
-  order.command = AxisCommand::Torque;
-  order.speed_limit = 1'500'000;
-  order.current = m.rated_active_current / 5;  // 20 % of the rated torque
+  const AxisOrder order = torque_jump(axis, m.rated_active_current / 5);  // 20 % of the rated torque
   const double j1 = 0.0034, j2 = 0.01, torque = 0.2 * kTorque;
   const double w = std::sqrt(30 * (1 / j1 + 1 / j2));
   for (int n = 1; n <= 200; ++n) {
@@ -427,11 +433,7 @@ TEST(SecondMass, PlayIsWithoutTorque) {
   m.stiffness = 30;
   m.backlash = 0.5;
   Axis axis(m);
-  AxisOrder order = ramp_to(0);
-  after(axis, order, 1);
-  order.command = AxisCommand::Torque;
-  order.speed_limit = 1'500'000;
-  order.current = m.rated_active_current / 10;
+  const AxisOrder order = torque_jump(axis, m.rated_active_current / 10);
   // Within half of the play only the rotor and its load speed up.
   const double slope = 0.1 * kTorque / (0.0034 * 5);
   const int free = static_cast<int>(std::sqrt(2 * 0.25 / slope) * 1e3);
