@@ -1,4 +1,4 @@
-// Reads the parameter lists that are compiled into the program. A fault in a list is a fault of the project:
+// The table of a unit, made of the lists that it has (parameter_list.hpp). A fault in a list is a fault of the project:
 // it goes into problems(), which a test holds empty, and the row is left out.
 #include "stdlib/parameters.hpp"
 
@@ -6,54 +6,12 @@
 #include <charconv>
 #include <optional>
 #include <set>
-#include <type_traits>
 #include <utility>
 
-#include "stdlib/units.hpp"
+#include "stdlib/parameter_list.hpp"
 
 namespace ipos::stdlib {
-
-namespace parameter_lists {
-std::span<const EmbeddedFile> embedded_files();  // generated, see CMakeLists.txt
-}
-
 namespace {
-
-enum Column {
-  kNumber,
-  kName,
-  kIndex,
-  kRole,
-  kDisplay,
-  kQuantity,
-  kConversion,
-  kAccess,
-  kDefault,
-  kRange,
-  kTexts,
-  kOption,
-  kNotes,
-  kColumns
-};
-
-// Cuts the text up to the separator, a character or several, off `rest`.
-template <typename Separator>
-std::string_view cut(std::string_view& rest, Separator separator) {
-  size_t size = 1;
-  if constexpr (!std::is_same_v<Separator, char>) size = std::string_view(separator).size();
-  const size_t at = rest.find(separator);
-  const std::string_view part = rest.substr(0, at);
-  rest = at == std::string_view::npos ? std::string_view{} : rest.substr(at + size);
-  return part;
-}
-
-template <typename Integer>
-std::optional<Integer> number(std::string_view text) {
-  Integer value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
 
 // "813", not "81" or "17.1".
 std::optional<size_t> three_digits(std::string_view text) {
@@ -66,108 +24,37 @@ std::optional<size_t> three_digits(std::string_view text) {
   return value;
 }
 
-bool read_access(std::string_view text, Parameter& p) {
-  while (!text.empty()) {
-    const std::string_view word = cut(text, '/');
-    if (word == "RW")
-      p.writable = true;
-    else if (word == "R")
-      p.needs_inhibit = true;
-    else if (word == "S")
-      p.writable_locked = true;
-    else if (word == "N")
-      p.nonvolatile = true;
-    else if (word == "E")
-      p.needs_output_stage_off = true;
-    else if (word == "B")
-      p.bcd = true;
-    else if (word != "RO")
-      return false;
-  }
-  return true;
+std::optional<uint16_t> index_of(std::string_view text) {
+  uint16_t index = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return index;
 }
 
-// "0..1000/10;1000..10000/100"
-bool read_ranges(std::string_view text, Parameter& p) {
-  while (!text.empty()) {
-    std::string_view range = cut(text, ';');
-    const auto minimum = number<int64_t>(cut(range, ".."));
-    const auto maximum = number<int64_t>(cut(range, '/'));
-    const auto step = number<int64_t>(range);
-    if (!minimum || !maximum || !step || *step <= 0 || *minimum > *maximum) return false;
-    p.ranges.push_back({*minimum, *maximum, *step});
-  }
-  return true;
+// Of a row of the list, but for texts that are those of another row.
+Parameter made_of(const ParameterList& list, const ListedRow& row, std::span<const ValueRange> ranges,
+                  std::span<const ValueText> texts) {
+  Parameter p;
+  static_cast<ParameterRules&>(p) = row.rules;
+  p.number = row.number.of(list.text);
+  p.name = row.name.of(list.text);
+  p.index = row.index;
+  p.view = row.view;
+  p.default_value = row.default_value;
+  p.ranges = ranges.subspan(row.first_range, row.ranges);
+  p.texts = texts.subspan(row.first_text, row.texts);
+  p.quantity = row.quantity;
+  p.conversion = row.conversion;
+  p.display = row.display.of(list.text);
+  p.notes = row.notes.of(list.text);
+  return p;
 }
 
-// "0=OFF|1=ON", "16*=IPOS input", "2@15/16=ON EXCEPT FSP", or "=P600" for the list of that row.
-bool read_texts(std::string_view text, const std::vector<Parameter>& before, Parameter& p) {
-  if (text.starts_with("=P")) {
-    text.remove_prefix(2);
-    for (const Parameter& other : before)
-      if (other.number == text) return p.texts = other.texts, !other.texts.empty();
-    return false;
-  }
-  while (!text.empty()) {
-    std::string_view entry = cut(text, '|');
-    std::string_view code = cut(entry, '=');
-    ValueText row{};
-    if (const size_t at = code.find('@'); at != std::string_view::npos) {
-      std::string_view versions = code.substr(at + 1);
-      const auto standard = number<uint8_t>(cut(versions, '/'));
-      const auto logodrive = number<uint8_t>(versions);
-      if (!standard || !logodrive) return false;
-      row.from_standard = *standard;
-      row.from_logodrive = *logodrive;
-      code = code.substr(0, at);
-    }
-    row.logodrive_only = code.ends_with('*');
-    if (row.logodrive_only) code.remove_suffix(1);
-    const auto value = number<int32_t>(code);
-    if (!value || entry.empty()) return false;
-    if (!p.texts.empty() && p.texts.back().value >= *value) return false;
-    row.value = *value;
-    row.text = entry;
-    p.texts.push_back(row);
-  }
-  return true;
-}
-
-bool read_option(std::string_view text, Parameter& p) {
-  if (text == "DRS")
-    p.option = OptionCard::Drs;
-  else if (text == "DIO")
-    p.option = OptionCard::Dio;
-  else if (text == "AIO")
-    p.option = OptionCard::Aio;
-  return text.empty() || p.option != OptionCard::None;
-}
-
-bool read_row(std::string_view line, const std::vector<Parameter>& before, Parameter& p) {
-  std::string_view cells[kColumns];
-  if (std::count(line.begin(), line.end(), '\t') != kColumns - 1) return false;
-  for (std::string_view& cell : cells) cell = cut(line, '\t');
-
-  p.number = cells[kNumber];
-  p.name = cells[kName];
-  p.display = cells[kDisplay];
-  p.notes = cells[kNotes];
-  p.view = cells[kRole] == "view";
-  const auto index = cells[kIndex].empty() ? std::optional<uint16_t>(0) : number<uint16_t>(cells[kIndex]);
-  if (p.name.empty() || !index || (!p.view && !cells[kRole].empty())) return false;
-  p.index = *index;
-  if (!read_texts(cells[kTexts], before, p)) return false;
-  if (p.view || p.index == 0) return true;
-
-  const auto quantity =
-      cells[kQuantity].empty() ? std::optional<uint8_t>(kNoQuantity) : number<uint8_t>(cells[kQuantity]);
-  const auto conversion = number<int8_t>(cells[kConversion]);
-  const auto default_value = number<int64_t>(cells[kDefault]);
-  if (!quantity || !conversion || !default_value) return false;
-  p.quantity = *quantity;
-  p.conversion = *conversion;
-  p.default_value = *default_value;
-  return read_access(cells[kAccess], p) && read_ranges(cells[kRange], p) && read_option(cells[kOption], p);
+// The texts of the row of that number, which stands before.
+std::span<const ValueText> texts_of(std::string_view number, const std::vector<Parameter>& before) {
+  const auto other =
+      std::find_if(before.begin(), before.end(), [number](const Parameter& p) { return p.number == number; });
+  return other == before.end() ? std::span<const ValueText>() : other->texts;
 }
 
 // A view with the rules of the row that leads its index.
@@ -183,14 +70,14 @@ Parameter view_of(const Parameter& lead, const Parameter& view) {
 }
 
 // Takes the place of the row with the same number, else its place in the order of the numbers.
-void replace_or_insert(std::vector<Parameter>& rows, Parameter row) {
+void replace_or_insert(std::vector<Parameter>& rows, const Parameter& row) {
   auto at = std::find_if(rows.begin(), rows.end(), [&row](const Parameter& old) {
     return !old.number.empty() && old.number >= row.number;
   });
   if (at != rows.end() && at->number == row.number)
-    *at = std::move(row);
+    *at = row;
   else
-    rows.insert(at, std::move(row));
+    rows.insert(at, row);
 }
 
 // The rows that lead an index, in rising order.
@@ -222,33 +109,41 @@ int64_t Parameter::maximum() const {
   return texts.empty() ? INT32_MAX : texts.back().value;
 }
 
-ParameterTable::ParameterTable(std::span<const EmbeddedFile* const> lists, bool option_cards) {
-  std::vector<Parameter> rows;
-  for (const EmbeddedFile* list : lists) {
-    const bool replaces = list != lists.front();
-    std::string_view rest = list->text;
-    bool header = true;
-    for (int line_number = 1; !rest.empty(); ++line_number) {
-      const std::string_view line = cut(rest, '\n');
-      if (line.empty() || line[0] == '#' || std::exchange(header, false)) continue;
-      Parameter row;
-      if (!read_row(line, rows, row))
-        problems_.push_back(std::string(list->name) + ":" + std::to_string(line_number) + ": " +
-                            std::string(line));
-      else if (replaces)
-        replace_or_insert(rows, std::move(row));
-      else
-        rows.push_back(std::move(row));
+void ParameterTable::take(const ParameterList& list, bool replaces) {
+  std::vector<ValueText>& texts = texts_.emplace_back();
+  texts.reserve(list.texts.size());
+  for (const ListedText& one : list.texts)
+    texts.push_back(
+        {one.value, one.text.of(list.text), one.logodrive_only, one.from_standard, one.from_logodrive});
+  const std::vector<ValueRange>& ranges = ranges_.emplace_back(list.ranges.begin(), list.ranges.end());
+  rows_.reserve(rows_.size() + list.rows.size());
+  for (const ListedRow& listed : list.rows) {
+    Parameter row = made_of(list, listed, ranges, texts);
+    bool good = listed.good;
+    if (good && listed.texts_of.size != 0) {
+      row.texts = texts_of(listed.texts_of.of(list.text), rows_);
+      good = !row.texts.empty();
     }
+    if (!good)
+      problems_.push_back(std::string(list.name) + ":" + std::to_string(listed.line_number) + ": " +
+                          std::string(listed.line.of(list.text)));
+    else if (replaces)
+      replace_or_insert(rows_, row);
+    else
+      rows_.push_back(row);
   }
+}
+
+ParameterTable::ParameterTable(std::span<const ParameterList> lists, bool option_cards) {
+  for (const ParameterList& list : lists) take(list, &list != &lists.front());
   std::set<uint16_t> of_cards;  // indices that go with the cards
   if (!option_cards)
-    std::erase_if(rows, [&](const Parameter& p) {
+    std::erase_if(rows_, [&](const Parameter& p) {
       return p.option != OptionCard::None && (of_cards.insert(p.index), true);
     });
 
-  const std::vector<const Parameter*> leads = leading_rows(rows);
-  for (Parameter& row : rows) {
+  const std::vector<const Parameter*> leads = leading_rows(rows_);
+  for (Parameter& row : rows_) {
     if (!row.view) continue;
     const Parameter* lead = find_index(leads, row.index);
     if (lead != nullptr)
@@ -257,8 +152,7 @@ ParameterTable::ParameterTable(std::span<const EmbeddedFile* const> lists, bool 
       problems_.push_back("no row leads the index of " + std::string(row.name));
     if (lead == nullptr) row.index = 0;
   }
-  std::erase_if(rows, [](const Parameter& row) { return row.view && row.index == 0; });
-  rows_ = std::move(rows);
+  std::erase_if(rows_, [](const Parameter& row) { return row.view && row.index == 0; });
   by_index_ = leading_rows(rows_);
   for (size_t i = 1; i < by_index_.size(); ++i)
     if (by_index_[i - 1]->index == by_index_[i]->index)
@@ -269,7 +163,8 @@ ParameterTable::ParameterTable(std::span<const EmbeddedFile* const> lists, bool 
                    [](const Parameter* a, const Parameter* b) { return a->number < b->number; });
   by_digits_.resize(1000);
   for (const Parameter& row : rows_)
-    if (const auto digits = three_digits(row.number); digits && by_digits_[*digits] == nullptr) by_digits_[*digits] = &row;
+    if (const auto digits = three_digits(row.number); digits && by_digits_[*digits] == nullptr)
+      by_digits_[*digits] = &row;
 }
 
 const Parameter* ParameterTable::find(uint16_t index) const { return find_index(by_index_, index); }
@@ -277,7 +172,7 @@ const Parameter* ParameterTable::find(uint16_t index) const { return find_index(
 const Parameter* ParameterTable::find(std::string_view text) const {
   if (text.starts_with('P') || text.starts_with('p'))
     text.remove_prefix(1);
-  else if (const auto index = text.size() > 3 ? number<uint16_t>(text) : std::nullopt; index && *index > 999)
+  else if (const auto index = text.size() > 3 ? index_of(text) : std::nullopt; index && *index > 999)
     return find(*index);
   if (const auto digits = three_digits(text)) return by_digits_[*digits];
   const auto at =
@@ -288,25 +183,26 @@ const Parameter* ParameterTable::find(std::string_view text) const {
 
 namespace {
 
-ParameterTable read_lists(const UnitType& unit) {
-  std::vector<const EmbeddedFile*> lists;
+ParameterTable table_of(const UnitType& unit) {
+  std::vector<ParameterList> lists;
   for (std::string_view names = unit.lists; !names.empty();) {
-    const std::string_view name = cut(names, ' ');
-    for (const EmbeddedFile& file : parameter_lists::embedded_files())
-      if (file.name == name) lists.push_back(&file);
+    const size_t end = std::min(names.find(' '), names.size());
+    for (const ParameterList& list : built_lists())
+      if (list.name == names.substr(0, end)) lists.push_back(list);
+    names.remove_prefix(std::min(end + 1, names.size()));
   }
   return {lists, unit.has(Trait::OptionCards)};
 }
 
 }  // namespace
 
-// Each table is read when the first who needs it asks.
+// Each table is made when the first who needs it asks.
 const ParameterTable& parameter_table(const UnitType& unit) {
   switch (unit.code) {
-#define UNIT(code, ...)                                   \
-  case code: {                                            \
-    static const ParameterTable table = read_lists(unit); \
-    return table;                                         \
+#define UNIT(code, ...)                                 \
+  case code: {                                          \
+    static const ParameterTable table = table_of(unit); \
+    return table;                                       \
   }
 #include "stdlib/unit_types.def"
     default: break;

@@ -14,7 +14,6 @@
 
 #include <tl/expected.hpp>
 
-#include "stdlib/embedded.hpp"
 #include "stdlib/return_codes.hpp"
 #include "stdlib/unit_types.hpp"
 
@@ -39,12 +38,8 @@ struct ValueText {
 // Card without which the parameter cannot be written; such parameters exist on MD_60A and MDX only.
 enum class OptionCard : uint8_t { None, Drs, Dio, Aio };
 
-struct Parameter {
-  std::string_view number;  // "813"; empty when none is printed
-  std::string_view name;
-  uint16_t index = 0;  // 0: a keypad setting without index
-  bool view = false;   // another row leads this index
-
+// Who may write a parameter, when, and what becomes of it.
+struct ParameterRules {
   bool writable = false;                // RW
   bool needs_inhibit = false;           // R: written only under controller inhibit
   bool writable_locked = false;         // S: written also under parameter lock
@@ -52,10 +47,17 @@ struct Parameter {
   bool needs_output_stage_off = false;  // E, ours
   bool bcd = false;                     // B, ours: travels as 4-byte BCD (0922 6818, 3.7.5)
   OptionCard option = OptionCard::None;
+};
+
+struct Parameter : ParameterRules {
+  std::string_view number;  // "813"; empty when none is printed
+  std::string_view name;
+  uint16_t index = 0;  // 0: a keypad setting without index
+  bool view = false;   // another row leads this index
 
   int64_t default_value = 0;
-  std::vector<ValueRange> ranges;  // empty: texts decide, or any value when there are none either
-  std::vector<ValueText> texts;    // in rising order
+  std::span<const ValueRange> ranges;  // empty: texts decide, or any value when there are none either
+  std::span<const ValueText> texts;    // in rising order
 
   uint8_t quantity = 0;  // 255 = none given
   int8_t conversion = 0;
@@ -72,11 +74,15 @@ struct Parameter {
   }
 };
 
+struct ParameterList;  // parameter_list.hpp
+
 class ParameterTable {
  public:
   // Rows of `lists` in order; a row of a later list replaces those of the same number. Without `option_cards`
-  // the rows that need one are left out.
-  ParameterTable(std::span<const EmbeddedFile* const> lists, bool option_cards);
+  // the rows that need one are left out. The texts of the lists must outlive the table.
+  ParameterTable(std::span<const ParameterList> lists, bool option_cards);
+  ParameterTable(const ParameterTable&) = delete;
+  ParameterTable& operator=(const ParameterTable&) = delete;
 
   std::span<const Parameter> rows() const { return rows_; }
   // The leading rows in rising order of their indices.
@@ -89,7 +95,11 @@ class ParameterTable {
   const Parameter* find(std::string_view text) const;
 
  private:
+  void take(const ParameterList& list, bool replaces);
+
   std::vector<Parameter> rows_;
+  std::vector<std::vector<ValueText>> texts_;  // of each list
+  std::vector<std::vector<ValueRange>> ranges_;
   std::vector<const Parameter*> by_index_;
   std::vector<const Parameter*> by_number_;
   std::vector<const Parameter*> by_digits_;  // of the numbers 000 to 999, which most have

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <map>
 #include <string>
 
 namespace ipos::stdlib {
@@ -64,16 +63,33 @@ bool holds(std::span<const ValueRange> ranges, int64_t number) {
   });
 }
 
+struct Numbered {
+  int64_t number;
+  const Parameter* parameter;
+};
+
+// The parameters that can be set, in rising order of their numbers.
+std::vector<Numbered> settable(const ParameterTable& table) {
+  std::vector<Numbered> all;
+  for (const Parameter* parameter : table.by_index())
+    if (parameter->writable && !parameter->number.empty())
+      all.push_back({number_of(parameter->number), parameter});
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Numbered& a, const Numbered& b) { return a.number < b.number; });
+  return all;
+}
+
 std::vector<Unsimulated> make_list(const UnitType& unit) {
   std::vector<Unsimulated> list;
-  const ParameterTable& table = parameter_table(unit);
+  const std::vector<Numbered> parameters = settable(parameter_table(unit));
+  const auto below = [](const Numbered& one, int64_t wanted) { return one.number < wanted; };
   for (const UnsimulatedRow& row : kRows) {
     if (!is_about(row.units, unit)) continue;
-    const std::vector<ValueRange> numbers = ranges_of(row.parameters);
-    for (const Parameter& parameter : table.rows())
-      if (!parameter.view && parameter.writable && parameter.index != 0 && !parameter.number.empty() &&
-          holds(numbers, number_of(parameter.number)))
-        list.push_back({table.find(parameter.index), &row, ranges_of(row.values)});
+    for (const ValueRange& numbers : ranges_of(row.parameters)) {
+      auto at = std::lower_bound(parameters.begin(), parameters.end(), numbers.minimum, below);
+      for (; at != parameters.end() && at->number <= numbers.maximum; ++at)
+        list.push_back({at->parameter, &row, ranges_of(row.values)});
+    }
   }
   std::stable_sort(list.begin(), list.end(), [](const Unsimulated& a, const Unsimulated& b) {
     return a.parameter->index < b.parameter->index;
@@ -111,13 +127,17 @@ std::string Unsimulated::text(int32_t value) const {
          parameter_text(*parameter, value) + ": " + std::string(row->text);
 }
 
+// Each list is made when the first who needs it asks.
 std::span<const Unsimulated> unsimulated(const UnitType& unit) {
-  static const std::map<uint8_t, std::vector<Unsimulated>> lists = [] {
-    std::map<uint8_t, std::vector<Unsimulated>> made;
-    for (const UnitType& type : unit_types()) made[type.code] = make_list(type);
-    return made;
-  }();
-  return lists.at(unit.code);
+  switch (unit.code) {
+#define UNIT(code, ...)                                           \
+  case code: {                                                    \
+    static const std::vector<Unsimulated> list = make_list(unit); \
+    return list;                                                  \
+  }
+#include "stdlib/unit_types.def"
+    default: return {};
+  }
 }
 
 std::span<const Unsimulated> unsimulated(const UnitType& unit, uint16_t index) {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "stdlib/parameters.hpp"
+#include "stdlib/parameter_list.hpp"
 #include "stdlib/services.hpp"
 #include "stdlib/units.hpp"
 #include "stdlib/unsimulated.hpp"
@@ -24,18 +24,18 @@ struct Lists {
         text += row + "\n";
       }
       texts.push_back(std::make_unique<std::string>(std::move(text)));
-      names.push_back(std::make_unique<std::string>("list" + std::string(files.size(), 'x')));
-      files.push_back(std::make_unique<EmbeddedFile>(EmbeddedFile{*names.back(), *texts.back()}));
-      pointers.push_back(files.back().get());
+      names.push_back(std::make_unique<std::string>("list" + std::string(read.size(), 'x')));
+      read.push_back(std::make_unique<ReadList>(*names.back(), *texts.back()));
+      lists.push_back(read.back()->list());
     }
-    table = std::make_unique<ParameterTable>(pointers, cards);
+    table = std::make_unique<ParameterTable>(lists, cards);
   }
   const Parameter& operator[](std::string_view number) const { return *table->find(number); }
   std::vector<std::string> problems() const { return {table->problems().begin(), table->problems().end()}; }
 
-  std::vector<std::unique_ptr<std::string>> names, texts;  // the files only look at them
-  std::vector<std::unique_ptr<EmbeddedFile>> files;
-  std::vector<const EmbeddedFile*> pointers;
+  std::vector<std::unique_ptr<std::string>> names, texts;  // the lists only look at them
+  std::vector<std::unique_ptr<ReadList>> read;
+  std::vector<ParameterList> lists;
   std::unique_ptr<ParameterTable> table;
 };
 

@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 
+#include "stdlib/parameter_list.hpp"
 #include "stdlib/units.hpp"
 #include "tests/harness/proves.hpp"
 #include "tests/stdlib/parameter_list.hpp"
@@ -174,9 +175,9 @@ TEST(ParameterTable, AccessLetters) {
         "es\n"
         "1\tn\t8300\t\t\t0\t0\t" +
         word + "\t0\t\t\t\t\n";
-    const EmbeddedFile file{"test.tsv", text};
-    const EmbeddedFile* files[] = {&file};
-    if (ParameterTable(files, true).problems().empty()) accepted.insert(word);
+    const ReadList read("test.tsv", text);
+    const ParameterList list = read.list();
+    if (ParameterTable({&list, 1}, true).problems().empty()) accepted.insert(word);
   };
   for (char first = 'A'; first <= 'z'; ++first) {
     if (first == '/') continue;
@@ -253,14 +254,15 @@ TEST(ParameterTable, BadListsAreReportedNotTrusted) {
   for (const char* row :
        {"1\tname", "1\t\t8300\t\t\t0\t0\tRO\t0\t\t\t\t", "1\tn\t99999\t\t\t0\t0\tRO\t0\t\t\t\t",
         "1\tn\t8300\tlead\t\t0\t0\tRO\t0\t\t\t\t", "1\tn\t8300\t\t\t0\t0\tXX\t0\t\t\t\t",
-        "1\tn\t8300\t\t\t0\t0\tRW\t0\t5..1/1\t\t\t", "1\tn\t8300\t\t\t0\t0\tRW\t0\t1..5/0\t\t\t",
+        "1\tn\t8300\t\t\t0\t0\tRW\t0\t5..1/1\t\t\t", "1\tn\t8300\t\t\t0\t0\tRW\t0\t1.5/1\t\t\t", "1\tn\t8300\t\t\t0\t0\tRW\t0\t\t\t\t\t", "1\tn\t8300\t\t\t0\t300\tRW\t0\t\t\t\t",
+        "1\tn\t8300\t\t\t0\t0\tRW\t12345678901234567890\t\t\t\t", "1\tn\t8300\t\t\t0\t0\tRW\t-\t\t\t\t", "1\tn\t8300\t\t\t0\t0\tRW\t0\t1..5/0\t\t\t",
         "1\tn\t8300\t\t\t0\t0\tRW\t0\t\t1=B|0=A\t\t", "1\tn\t8300\t\t\t0\t0\tRW\t0\t\t=P9\t\t",
         "1\tn\t8300\t\t\t0\t0\tRW\t\t\t\t\t", "1\tn\t8300\tview\t\t\t\t\t\t\t\t\t",
         "1\tn\t8300\t\t\t0\t0\tRW\t0\t\t\tXYZ\t"}) {
     const std::string text = std::string("# comment\n") + header + row + "\n";
-    const EmbeddedFile file{"test.tsv", text};
-    const EmbeddedFile* files[] = {&file};
-    const ParameterTable bad(files, true);
+    const ReadList read("test.tsv", text);
+    const ParameterList list = read.list();
+    const ParameterTable bad({&list, 1}, true);
     EXPECT_EQ(bad.problems().size(), 1U) << row;
     EXPECT_TRUE(bad.rows().empty()) << row;
   }
