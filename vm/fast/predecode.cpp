@@ -1,16 +1,27 @@
 // Two passes: forward, each command by itself; backward, the best cut of every line into operations.
 #include "vm/fast/predecode.hpp"
 
+#include <algorithm>
+
 #include "vm/context/arithmetic.hpp"
 #include "vm/fast/commands.hpp"
 #include "vm/fast/engine.hpp"
 #include "vm/fast/fill_loop.hpp"
+#include "vm/isa/operand_text.hpp"
 
 namespace ipos::vm::fast {
 namespace {
 
 constexpr size_t kOperations = static_cast<size_t>(Operation::kCount);
 constexpr size_t kLongest = 6;  // commands of an operation
+
+// Words of each command. Programs have some dozen patterns to try for each of their commands, so nothing is looked up then.
+constexpr auto kWords = [] {
+  std::array<uint8_t, 256> words{};
+#define OPCODE(code, name, text, flow, reads, writes, faults, meaning) words[code] = words_of(text);
+#include "vm/isa/opcodes.def"
+  return words;
+}();
 
 // A row of operations.def as a pattern.
 struct Pattern {
@@ -20,6 +31,7 @@ struct Pattern {
   uint8_t met = 0;    // results that stay in a register
   bool loop = false;  // its last command leads back to its first
   std::array<Opcode, kLongest> opcodes{};
+  std::array<uint8_t, kLongest> at{};  // where each begins, in words
   bool (*fits)(const Slot*) = nullptr;
 };
 
@@ -29,6 +41,8 @@ constexpr Pattern make_pattern(Operation operation, std::initializer_list<Opcode
   out.operation = operation;
   for (const Opcode opcode : F::kOpcodes) out.opcodes[out.count++] = opcode;
   for (const Opcode opcode : tail) out.opcodes[out.count++] = opcode;
+  for (size_t part = 1; part < out.count; ++part)
+    out.at[part] = static_cast<uint8_t>(out.at[part - 1] + kWords[static_cast<uint8_t>(out.opcodes[part - 1])]);
   out.words = static_cast<uint8_t>(F::kWords + tail_words);
   out.met = F::kMet;
   out.fits = F::fits;
@@ -53,6 +67,9 @@ constexpr Pattern kPatterns[] = {
 #include "vm/fast/operations.def"
 };
 constexpr size_t kPatternCount = std::size(kPatterns);
+static_assert(std::all_of(std::begin(kPatterns), std::end(kPatterns), [](const Pattern& p) {
+  return p.words == p.at[p.count - 1U] + kWords[static_cast<uint8_t>(p.opcodes[p.count - 1U])];
+}));
 
 // The patterns that begin with an opcode, as a list.
 struct Lists {
@@ -172,7 +189,7 @@ void Predecoded::choose() {
   for (uint32_t at = static_cast<uint32_t>(code.size()); at-- > 0;) {
     if (line_at(at) == 0) continue;
     const Opcode opcode = opcode_at(at);
-    const uint32_t words = coding(opcode).words;
+    const uint32_t words = kWords[static_cast<uint8_t>(opcode)];
     if (!leads_elsewhere(opcode)) line_at(at) = static_cast<uint16_t>(line(at + words) + 1);
     Slot* s = &slots_[at];
 
@@ -184,15 +201,12 @@ void Predecoded::choose() {
          n = kLists.next[static_cast<size_t>(n)]) {
       const Pattern& pattern = kPatterns[static_cast<size_t>(n)];
       bool fits = at + pattern.words <= code.size();
-      uint32_t next = at;
-      for (size_t part = 0; fits && part < pattern.count; ++part) {
-        fits = opcode_at(next) == pattern.opcodes[part];
-        next += coding(pattern.opcodes[part]).words;
-      }
+      for (size_t part = 1; fits && part < pattern.count; ++part)
+        fits = opcode_at(at + pattern.at[part]) == pattern.opcodes[part];
       if (!fits || !pattern.fits(s)) continue;
       if (pattern.loop && code[at + pattern.words - 1U] != at) continue;
       const bool ends = leads_elsewhere(pattern.opcodes[pattern.count - 1U]);
-      const uint32_t total = 8U - pattern.met - pattern.loop + (ends ? 0 : cost_at(next));
+      const uint32_t total = 8U - pattern.met - pattern.loop + (ends ? 0 : cost_at(at + pattern.words));
       if (best != Operation::Leave && total >= least) continue;
       best = pattern.operation;
       least = total;
