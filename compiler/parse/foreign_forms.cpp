@@ -82,7 +82,8 @@ class Forms {
       if (now == TokenKind::DirectiveEnd) directive = false;
       if (now == TokenKind::LeftBrace) ++depth_;
       if (now == TokenKind::RightBrace) --depth_;
-      if (directive || !(based_number() || bit() || constants_of_enum() || constant() || declarations() || known_name()))
+      if (directive || !begins_form(now) ||
+          !(based_number() || bit() || constants_of_enum() || constant() || declarations() || known_name()))
         out_.push_back(tokens_[at_++]);
     }
     return std::move(out_);
@@ -100,6 +101,12 @@ class Forms {
     diagnostics_.report(Diag::ForeignWord, {tokens_[at_].span.begin, tokens_[at_ + count - 1].span.end},
                         {std::string(what), std::move(advice)});
   }
+  // What every form below begins with; most tokens of a program are something else.
+  static bool begins_form(TokenKind kind) {
+    return kind == TokenKind::Name || kind == TokenKind::Number || kind == TokenKind::Enum || kind == TokenKind::Const ||
+           kind == TokenKind::Static;
+  }
+
   // In place of the token at the distance.
   void put(size_t distance, TokenKind as, std::string words) {
     Token made = tokens_[at_ + distance];
@@ -271,7 +278,7 @@ class Forms {
 
   // A constant, or a type that is one of constants.
   bool known_name() {
-    if (kind(0) != TokenKind::Name) return false;
+    if (kind(0) != TokenKind::Name || (types_.empty() && constants_.empty())) return false;
     if (!out_.empty() && (out_.back().kind == TokenKind::Dot || out_.back().kind == TokenKind::Arrow)) return false;
     if (std::find(types_.begin(), types_.end(), text(0)) != types_.end() && kind(1) == TokenKind::Name) {
       put(0, TokenKind::Long, "long");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <string>
 #include <unordered_set>
 
@@ -36,6 +37,29 @@ constexpr Infix kInfix[] = {{"and", TokenKind::AndAnd, "write '&&', or '&' for b
                             {"mod", TokenKind::Percent, "write '%'"},
                             {"div", TokenKind::Slash, "write '/'"}};
 constexpr std::string_view kBlockEnds[] = {"end_if", "end_while", "end_for", "end_case", "endif"};
+
+// Words that mean something in another spelling, by their first letter and their length: most names of a program are
+// told from all of them at once.
+class Spellings {
+ public:
+  constexpr Spellings() {
+    for (const Keyword& row : kKeywords) add(row.spelling);
+    for (const Infix& row : kInfix) add(row.word);
+    for (const std::string_view word : kBlockEnds) add(word);
+    for (const std::string_view word : {"not", "then", "begin", "end"}) add(word);
+  }
+  constexpr bool may_have(std::string_view word) const {
+    return word.size() < kLongest && (lengths_[letter(word[0])] >> word.size() & 1U) != 0;
+  }
+
+ private:
+  static constexpr size_t kLongest = 32;
+  static constexpr size_t letter(char c) { return static_cast<size_t>(c) & 31U; }  // a and A are one
+  constexpr void add(std::string_view word) { lengths_[letter(word[0])] |= 1U << word.size(); }
+
+  std::array<uint32_t, 32> lengths_{};
+};
+constexpr Spellings kSpellings;
 
 constexpr size_t kLongestHead = 500;  // tokens in the brackets of a misspelt head
 
@@ -100,6 +124,7 @@ class Translator {
 
   // `:=` and `<>`, written together.
   bool sign(const Token& token) {
+    if (token.kind != TokenKind::Colon && token.kind != TokenKind::Less) return false;
     if (at_ + 1 >= tokens_.size() || tokens_[at_ + 1].spaced || tokens_[at_ + 1].line_start) return false;
     if (token.kind == TokenKind::Colon && next() == TokenKind::Assign)
       return foreign(TokenKind::Assign, ":=", "'=' assigns", 2);
@@ -110,7 +135,8 @@ class Translator {
 
   bool word(const Token& token) {
     if (before() == TokenKind::Dot || types_.contains(token.text)) return false;
-    return plc_word(token) || keyword(token);
+    const bool known = kSpellings.may_have(token.text);
+    return (known && plc_word(token)) || keyword(token, known);
   }
 
   // A bracket with something in it: no call of a function of the program has that.
@@ -161,8 +187,9 @@ class Translator {
     return true;
   }
 
-  bool keyword(const Token& token) {
-    for (const Keyword& row : kKeywords)
+  // `known`: one of them may have this spelling.
+  bool keyword(const Token& token, bool known) {
+    for (const Keyword& row : known ? std::span(kKeywords) : std::span<const Keyword>())
       if (equal_but_for_case(token.text, row.spelling) && stands_for(row.kind)) return meant(row);
     if (depth_ > 0 && ends_statement(before()) && is_word_or_number(next()) && kind(at_ + 2) == TokenKind::Colon &&
         stdlib::nearest(token.text, std::array<std::string_view, 1>{"case"}) == "case")

@@ -3,6 +3,7 @@
 
 #include "compiler/preprocess/include.hpp"
 #include "compiler/preprocess/preprocessor.hpp"
+#include "compiler/preprocess/scanned_header.hpp"
 #include "stdlib/spelling.hpp"
 
 namespace ipos::compiler {
@@ -108,7 +109,7 @@ void Preprocessor::undefine(const Token& directive) {
 }
 
 void Preprocessor::include(const Token& directive) {
-  const Token header = files_.back().scanner.header_name();
+  const Token header = files_.back().header_name();
   const bool line_ended = header.kind == TokenKind::Newline || header.kind == TokenKind::End;
   const Line rest = line_ended ? Line{} : read_line();
   if (header.kind != TokenKind::HeaderName || header.text.size() < 3) {
@@ -152,7 +153,7 @@ void Preprocessor::include(const Token& directive) {
   const SourceFile& file =
       map_.add(std::move(found->name), std::move(found->path), std::move(found->text), header.span.begin);
   result_.record.includes.push_back({header.span, &file});
-  open(file);
+  open(file, found->header != nullptr ? scanned_header(*found->header) : std::span<const Token>());
 }
 
 // The new name is taken as written, all after it with macros expanded.

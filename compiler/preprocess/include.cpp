@@ -55,13 +55,13 @@ std::optional<FoundFile> find_include(const std::string& name, const SourceFile&
     std::string path = directory + plain;
     if (options.read_file) {
       if (std::optional<std::string> text = options.read_file(path))
-        return FoundFile{path, path, std::move(*text)};
+        return FoundFile{path, path, std::move(*text), nullptr};
     }
     searched.push_back(directory.empty() ? "the current directory" : directory);
   }
   // The built-in headers come from a file system that does not tell cases apart (ours).
   for (const stdlib::EmbeddedFile& header : options.headers)
-    if (stdlib::equal_but_for_case(header.name, plain)) return FoundFile{name, "", std::string(header.text)};
+    if (stdlib::equal_but_for_case(header.name, plain)) return FoundFile{name, "", std::string(header.text), &header};
   searched.emplace_back("the built-in headers");
   return std::nullopt;
 }

@@ -13,6 +13,7 @@ struct FoundFile {
   std::string name;  // for messages
   std::string path;  // empty: built in
   std::string text;
+  const stdlib::EmbeddedFile* header = nullptr;  // that is built in
 };
 
 // Order of IPOSplus p. 179: a name with an explicit path as it stands, else beside the source file, then the

@@ -54,7 +54,7 @@ void Preprocessor::run_file(const SourceFile& file) {
   }
 }
 
-void Preprocessor::open(const SourceFile& file) {
+void Preprocessor::open(const SourceFile& file, std::span<const Token> scanned) {
   const Location start{file.base};
   if (is_utf16(file.text)) {
     diagnostics_.report(Diag::WrongEncoding, {start, start}, {file.name});
@@ -66,7 +66,17 @@ void Preprocessor::open(const SourceFile& file) {
     return;
   }
   byte_budget_ -= file.text.size();
-  files_.push_back({&file, Scanner(file, diagnostics_), {}});
+  files_.push_back({&file, {}, scanned, {}});
+  if (scanned.empty()) files_.back().scanner.emplace(file, diagnostics_);
+}
+
+Token Preprocessor::OpenFile::next() {
+  if (scanner) return scanner->next();
+  Token token = scanned.front();
+  if (scanned.size() > 1) scanned = scanned.subspan(1);  // as a scanner, which gives End again and again
+  token.span.begin.value += file->base;
+  token.span.end.value += file->base;
+  return token;
 }
 
 void Preprocessor::close() {
@@ -79,7 +89,7 @@ void Preprocessor::close() {
 
 Token Preprocessor::read() {
   if (given_up_) return {};
-  Token token = files_.back().scanner.next();
+  Token token = files_.back().next();
   if (token_budget_ == 0) {
     too_much(token.span);
     return {};
@@ -96,6 +106,7 @@ Token Preprocessor::read() {
 
 Preprocessor::Line Preprocessor::read_line() {
   Line line;
+  line.reserve(4);  // most are a #define of one number
   for (Token token = read(); token.kind != TokenKind::Newline && token.kind != TokenKind::End; token = read())
     line.push_back(token);
   return line;

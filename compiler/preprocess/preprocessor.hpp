@@ -1,7 +1,9 @@
 // The state of one preprocessing run: open files, open conditions, macros. Used by preprocess() only.
 #pragma once
 
+#include <optional>
 #include <set>
+#include <span>
 #include <string>
 
 #include "compiler/preprocess/macros.hpp"
@@ -32,15 +34,19 @@ class Preprocessor {
   };
   struct OpenFile {
     const SourceFile* file;
-    Scanner scanner;
+    std::optional<Scanner> scanner;  // nothing for a built-in header, whose tokens are there
+    std::span<const Token> scanned;
     std::vector<Condition> conditions;
+
+    Token next();
+    Token header_name() { return scanner ? scanner->header_name() : next(); }
   };
   using Line = std::vector<Token>;
 
   // preprocessor.cpp: the flow of tokens.
   void define_from_command_line();
   void run_file(const SourceFile& file);
-  void open(const SourceFile& file);
+  void open(const SourceFile& file, std::span<const Token> scanned = {});
   void close();
   Token read();
   Line read_line();

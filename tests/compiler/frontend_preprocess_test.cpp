@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "stdlib/headers.hpp"
 #include "tests/compiler/frontend_run.hpp"
 
 namespace ipos::tests {
@@ -119,6 +120,43 @@ TEST(FrontendIncludes, SearchOrder) {
   files.erase("two/a.h");
   EXPECT_EQ(FrontendRun("#include <a.h>", files, options).words(), "built_in");
   EXPECT_EQ(FrontendRun("#include <CONST.H>", files, options).words(), "constants");
+}
+
+// Built-in headers are scanned once in a process: the second program, where they lie elsewhere, and a header of the same
+// text beside the program read as the first one does, with the same places.
+TEST(FrontendIncludes, BuiltInHeadersReadAsTheirTexts) {
+  const auto lines = [](const compiler::PreprocessedText& text, const compiler::SourceMap& map) {
+    std::string all;
+    const auto add = [&](compiler::Span span) {
+      const compiler::Position at = map.position(map.spelling(span.begin));
+      const compiler::Position end = map.position(map.spelling(span.end));
+      all += at.file->name + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + "-" + std::to_string(end.column) + " ";
+    };
+    for (const auto& one : text.record.definitions) {
+      add(one.name);
+      for (const compiler::Token& token : one.body) (add(token.span), all += token.text), all += '\n';
+    }
+    for (const auto& one : text.record.includes) add(one.header);
+    for (const compiler::Token& token : text.tokens) (add(token.span), all += token.text), all += '\n';
+    return all;
+  };
+  const auto read = [&](const std::string& front, bool built_in) {
+    compiler::PreprocessOptions options;
+    FrontendRun::Files files;
+    for (const stdlib::EmbeddedFile& one : stdlib::headers::embedded_files()) files[std::string(one.name)] = one.text;
+    if (built_in) {
+      files.clear();
+      options.headers = stdlib::headers::embedded_files();
+    }
+    FrontendRun run(front + "#include <constb.h>\n#include <iob.h>\nlong x; main() { x = DI10 + ML_BT_SBUS1; }\n", files, options);
+    const std::string all = lines(compiler::preprocess(run.map, *run.main, run.options, run.diagnostics), run.map);
+    EXPECT_EQ(run.messages(), Messages{});
+    EXPECT_EQ(run.map.files().size(), 4U);  // const.h, too
+    return all;
+  };
+  const std::string front = "// A line more.\n#define MINE 1\n";
+  EXPECT_EQ(read("", true), read("", false));
+  EXPECT_EQ(read(front, true), read(front, false));
 }
 
 TEST(FrontendIncludes, BesideTheIncludingFileThenBesideTheMainFile) {
