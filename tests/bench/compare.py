@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Runs the benchmarks of this folder on every engine in turn and prints times relative to Lua 5.4.
 
-compare.py RUNNER [--rounds N] [--peers lua5.4,c] [PROGRAM...]
+compare.py RUNNER [--rounds N] [--peers lua5.4,c] [--store FILE] [--against FILE] [PROGRAM...]
 RUNNER is ipos_bench_run. Every round runs every engine once, so that a change of the machine's speed meets all
 of them; a cell is the median over the rounds of the ratios within a round. CPU time, the system's included (it
 tells the two apart by samples, too coarse for runs of 20 ms), without what an empty program takes. All engines must
-print the same number.
+print the same number. --store keeps the cells, --against tells them beside a run that was kept (stored.py).
 """
 import argparse
 import math
@@ -15,7 +15,10 @@ import subprocess
 import sys
 import tempfile
 
+import stored
+
 HERE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "programs")
+NOISE = 0.1  # a cell of one machine comes again within it, mostly
 ISSUE = ["sieve", "loops", "fib", "collatz", "state", "crc"]
 EMPTY = {"IPC": "long result; main() { result = 0; }", "lua": "print(0)"}
 
@@ -40,6 +43,7 @@ def main():
     options.add_argument("--rounds", type=int, default=5)
     options.add_argument("--peers", default="lua5.4,c")
     options.add_argument("--engines", default="reference,fast")
+    stored.add_options(options)
     args = options.parse_args()
     names = args.programs or ISSUE + sorted(f[:-4] for f in os.listdir(HERE) if f.endswith(".IPC") and f[:-4] not in ISSUE)
     engines = ["lua5.4"] + [p for p in args.peers.split(",") if p not in ("lua5.4", "")] + args.engines.split(",")
@@ -92,7 +96,10 @@ def main():
         cells += [f"{statistics.median(ratios[engine][n]):.3f}" for n in others]
         cells += [f"**{mean(engine, others):.3f}**"] if others else []
         print(f"| {engine} | " + " | ".join(cells) + " |")
+    print("processor: " + stored.processor())
     print("seconds of lua5.4: " + ", ".join(f"{n} {statistics.median(seconds['lua5.4'][n]):.3f}" for n in names))
+    cells = {e: {n: statistics.median(ratios[e][n]) for n in names} for e in engines if e != "lua5.4"}
+    stored.finish(args, "compare", cells, NOISE)
 
 
 main()
