@@ -123,7 +123,7 @@ tl::expected<Contents, Mistakes> Contents::read(const Source& source) {
       if (!file) return tl::unexpected(Mistakes{{source.path, 0, 0, file.error()}});
       text = *std::move(file);
     }
-    runtime::PlantFileResult read = runtime::read_plant_file(text);
+    runtime::PlantFileResult read = runtime::read_plant_file(text, source.path);
     errors = std::move(read.errors);
     contents.file_ = source.lone_line ? runtime::line_alone(read.plant, *source.lone_line) : std::move(read.plant);
   }

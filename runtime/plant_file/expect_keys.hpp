@@ -1,5 +1,5 @@
-// Keys of an [[expect]]: those that every reader of a plant knows, and those that only `ipos test` looks at; and what only tests and
-// campaigns have beside the tables of a plant.
+// Keys of an [[expect]]: those that every reader of a plant knows, and those that only `ipos test` looks at; and what a test has
+// beside the tables of a plant.
 #pragma once
 
 #include <string_view>
@@ -18,8 +18,5 @@ inline const std::vector<std::string_view> kTestExpectKeys = {
 // Keys of a test file beside those of a plant.
 inline const std::vector<std::string_view> kTestKeys = {"plant", "plant_expects", "by_hand", "speed",
                                                         "step",  "expect",        "case"};
-
-// Keys of a campaign that neither a plant nor a test has (docs/reference/campaign-file.md).
-inline const std::vector<std::string_view> kCampaignKeys = {"tests", "for", "limit", "sample", "count", "seed", "vary", "measure"};
 
 }  // namespace ipos::runtime

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <charconv>
 
-#include "runtime/plant_file/expect_keys.hpp"
 #include "runtime/plant_file/plant_reader.hpp"
 #include "runtime/plant_file/serial_plan.hpp"
 
@@ -56,29 +55,16 @@ void read_plant_sections(PlantReader& reader, const toml::table& root,
   read_surroundings(reader, root);
 }
 
-bool refuse_campaign(PlantReader& reader, const toml::table& root) {
-  for (const std::string_view key : kCampaignKeys)
-    if (const toml::node* node = root.get(key)) {
-      reader.error(place_of(*node), "this is a campaign: `ipos campaign run FILE --out DIR` runs its cases, `ipos campaign plan FILE` counts them");
-      return true;
-    }
-  return false;
+bool refuse_others(PlantReader& reader, const toml::table& root, std::string_view path, std::initializer_list<TomlKind> taken) {
+  const auto why = wrong_kind(root, path, taken);
+  if (why) reader.error(why->place, why->text);
+  return why.has_value();
 }
 
-PlantFileResult read_plant_file(std::string_view text) {
+PlantFileResult read_plant_file(std::string_view text, std::string_view path) {
   PlantReader reader;
   const auto root = parse_toml(reader, text);
-  if (!root || refuse_campaign(reader, *root)) return std::move(reader.result);
-  for (const std::string_view key : kTestKeys)
-    if (const toml::node* node = key == "expect" ? nullptr : root->get(key)) {
-      const std::string named = (*root)["plant"].value_or(std::string());
-      reader.error(place_of(*node), named.empty()
-                                        ? "this is a test: `ipos test` carries out what stands here"
-                                        : fmt::format("this is a test of the plant '{}': `ipos test` and "
-                                                      "`ipos debug` carry it out, other verbs take the plant",
-                                                      named));
-      return std::move(reader.result);
-    }
+  if (!root || refuse_others(reader, *root, path, {TomlKind::Plant})) return std::move(reader.result);
   read_plant_sections(reader, *root, {"expect"});
   read_expectations(reader, *root);
   check_plant(reader);

@@ -156,6 +156,7 @@ struct Stimulus {
   Signal signal;
   Action action = Action::Set;
   int32_t value = 0;
+  std::string written;  // of a signal of any kind, as it stands in the file: its value is read when the signal is known
   int64_t at = 0;      // ns
   int64_t length = 0;  // ns, of Pulse; of Force 0: until Release
   int64_t every = 0;   // ns; 0: only once
@@ -221,7 +222,8 @@ struct PlantFileResult {
   std::vector<PlantError> errors;  // empty: the plant can be used
 };
 
-PlantFileResult read_plant_file(std::string_view text);
+// The path decides only whether a file with nothing but the name of a plant is a test or a campaign (toml_kind.hpp).
+PlantFileResult read_plant_file(std::string_view text, std::string_view path = {});
 
 // The [[fault]] tables of a text, for a plant that is there; the result has only them.
 PlantFileResult read_fault_tables(std::string_view text, const PlantFile& plant);

@@ -14,6 +14,7 @@
 
 #include "runtime/plant_file/plant_file.hpp"
 #include "runtime/plant_file/read_toml.hpp"
+#include "runtime/plant_file/toml_sign.hpp"
 
 namespace ipos::runtime {
 
@@ -108,8 +109,8 @@ class PlantReader {
 
 // The table of a TOML text; nothing with an error.
 std::optional<toml::table> parse_toml(PlantReader& reader, std::string_view text);
-// A campaign is no plant and no test: that is told, with the verb that takes it. True: it is one.
-bool refuse_campaign(PlantReader& reader, const toml::table& root);
+// A file of another kind is told once, with the verb that takes it. True: it is of another kind.
+bool refuse_others(PlantReader& reader, const toml::table& root, std::string_view path, std::initializer_list<TomlKind> taken);
 // All sections of a plant but [[expect]]. `also` are keys of the root beside them, which the caller reads.
 void read_plant_sections(PlantReader& reader, const toml::table& root,
                          const std::vector<std::string_view>& also);

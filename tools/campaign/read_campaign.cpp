@@ -3,7 +3,6 @@
 #include <filesystem>
 
 #include "runtime/plant/trace_hash.hpp"
-#include "runtime/plant_file/expect_keys.hpp"
 #include "tools/campaign/read_vary.hpp"
 #include "tools/campaign/subject.hpp"
 #include "tools/cli/failure.hpp"
@@ -245,10 +244,8 @@ Campaign read_campaign(const std::string& path, const CompileFlags& compile) {
   campaign.file = path;
   PlantReader reader;
   auto root = runtime::parse_toml(reader, read_file(path));
-  if (root) {
-    std::vector<std::string_view> known{"plant", "fault"};
-    known.insert(known.end(), runtime::kCampaignKeys.begin(), runtime::kCampaignKeys.end());
-    reader.known_keys(*root, "a campaign", known);
+  if (root && !runtime::refuse_others(reader, *root, path, {runtime::TomlKind::Campaign})) {
+    reader.known_keys(*root, "a campaign", {"plant", "fault", "tests", "for", "limit", "sample", "count", "seed", "vary", "measure"});
     read_what(reader, *root, campaign, compile);
     read_times(reader, *root, campaign);
     read_sampling(reader, *root, campaign.outline.sampling);

@@ -95,7 +95,7 @@ Prepared Subject::prepare(const Levels& levels) {
   };
   if (campaign_.tests.empty()) {
     const TomlEdit edit = with_keys(levels, campaign_.plant_text, prepared.refused);
-    runtime::PlantFileResult read = runtime::read_plant_file(edit.text());
+    runtime::PlantFileResult read = runtime::read_plant_file(edit.text(), campaign_.plant);
     // What the file says where: lines that a key has added are not in it.
     for (runtime::Expectation& one : read.plant.expectations) one.place.line = edit.original_line(one.place.line);
     if (read.errors.empty()) read.errors = open_machines(read.plant, campaign_.plant, programs_.allow_fmu());

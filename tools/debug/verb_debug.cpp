@@ -23,7 +23,6 @@
 #include "tools/input/program.hpp"
 #include "tools/lsp_base/transport.hpp"
 #include "tools/processes/replaceable_process.hpp"
-#include "tools/test_file/read_tests.hpp"
 #include "tools/testing/debugged_test.hpp"
 
 namespace ipos::tools {
@@ -50,7 +49,7 @@ debug::MakePlant plant_maker(PlantInput input, std::optional<vm::Rates> rates) {
 }
 
 debug::Debuggee debuggee_of(const DebugFlags& flags) {
-  if (testing::is_test_file(flags.file))
+  if (kind_of_file(flags.file) == runtime::TomlKind::Test)
     return testing::debugged_test(testing::chosen_test(flags.file, flags.test_case), flags.compile, {.speed = flags.speed});
   if (!flags.test_case.empty())
     throw Failure(kUsage, fmt::format("{}: only a test (.test.toml) has cases", compiler::printable(flags.file)));

@@ -122,7 +122,7 @@ std::string texts_of(size_t count, std::string_view one) { return fmt::format("{
 // Before somebody is asked whether a foreign FMU may run.
 void refuse_machines(const std::string& path) {
   if (!is_plant(path)) return;
-  const runtime::PlantFile file = runtime::read_plant_file(read_file(path)).plant;
+  const runtime::PlantFile file = runtime::read_plant_file(read_file(path), path).plant;
   if (file.machines.empty()) return;
   const runtime::FilePlace place = file.machines.front().place;
   throw Failure(kBadInput, fmt::format("{}:{}:{}: a plant with foreign machines cannot become an FMU itself", path, place.line, place.column));

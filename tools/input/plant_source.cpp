@@ -11,8 +11,13 @@ namespace ipos::tools {
 
 bool is_plant(std::string_view path) { return std::filesystem::path(path).extension() == ".toml"; }
 
+runtime::TomlKind kind_of_file(const std::string& path) {
+  const auto text = is_plant(path) ? try_read_file(path) : std::nullopt;
+  return text ? runtime::kind_of_text(*text, path) : runtime::TomlKind::Unknown;
+}
+
 runtime::PlantFileResult try_read_plant(const std::string& path) {
-  runtime::PlantFileResult result = runtime::read_plant_file(read_file(path));
+  runtime::PlantFileResult result = runtime::read_plant_file(read_file(path), path);
   for (runtime::StationConfig& station : result.plant.stations)
     if (!station.nvram.empty()) station.nvram = beside(path, station.nvram);
   return result;

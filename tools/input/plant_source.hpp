@@ -5,11 +5,15 @@
 #include <string_view>
 
 #include "runtime/plant_file/plant_file.hpp"
+#include "runtime/plant_file/toml_kind.hpp"
 
 namespace ipos::tools {
 
 // *.toml
 bool is_plant(std::string_view path);
+
+// Of a file that is no *.toml, or cannot be read: unknown.
+runtime::TomlKind kind_of_file(const std::string& path);
 
 // Memory files are relative to the plant file, and so they come back.
 runtime::PlantFileResult try_read_plant(const std::string& path);

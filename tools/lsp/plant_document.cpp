@@ -9,6 +9,7 @@
 
 #include "runtime/plant/all_mistakes.hpp"
 #include "runtime/plant/plant.hpp"
+#include "runtime/plant_file/toml_kind.hpp"
 #include "stdlib/parameters.hpp"
 #include "stdlib/unit_names.hpp"
 #include "tools/cli/files.hpp"
@@ -40,14 +41,14 @@ std::vector<PlantError> refused_parameters(runtime::PlantFile plant) {
 }
 
 std::vector<PlantError> errors_of(const std::string& path, const std::string& text) {
-  if (is_test(path)) {
+  if (runtime::named_test(path)) {
     std::vector<PlantError> errors;
     for (const testing::TestCase& test : testing::read_test_file(path, text))
       if (test.errors_in.empty())
         for (const PlantError& error : test.errors) errors.push_back(error);
     return errors;
   }
-  runtime::PlantFileResult result = runtime::read_plant_file(text);
+  runtime::PlantFileResult result = runtime::read_plant_file(text, path);
   if (result.errors.empty()) return refused_parameters(std::move(result.plant));
   std::vector<std::optional<vm::Image>> programs(result.plant.stations.size());
   return runtime::all_mistakes(result.plant, std::move(programs), std::move(result.errors));
@@ -257,8 +258,8 @@ Json range_in(const Spot& spot, size_t begin, size_t end, Encoding encoding) {
 }  // namespace
 
 bool is_plant_document(const Workspace& workspace, const std::string& path) {
-  if (!path.ends_with(".toml") || is_campaign(path)) return false;  // the campaign's own verb reads it
-  if (is_test(path)) return true;
+  if (!path.ends_with(".toml") || runtime::named_campaign(path)) return false;  // the campaign's own verb reads it
+  if (runtime::named_test(path)) return true;
   const auto text = workspace.text(path);
   if (!text) return false;
   const auto lines = lines_of(*text);
@@ -325,7 +326,7 @@ Json plant_completion(Workspace& workspace, const Json& params) {
     if (const auto allowed = allowed_at(path, *spot)) offer_allowed(items, *allowed);
     if (spot->key == "program" || spot->key == "plant")
       for (const std::string& file : list_files(std::filesystem::path(path).parent_path().string()))
-        if (spot->key == "program" ? is_program(file) : file.ends_with(".toml") && !is_test(file) && !is_campaign(file))
+        if (spot->key == "program" ? is_program(file) : file.ends_with(".toml") && !runtime::named_test(file) && !runtime::named_campaign(file))
           offer(items, fmt::format("\"{}\"", file), kFile);
   } else {
     for (const std::string& known : known_at(path, *spot, fmt::format("{} = 0", kProbe)))

@@ -1,6 +1,7 @@
 // Folds, colours and lenses of plants and tests.
 #include <algorithm>
 
+#include "runtime/plant_file/toml_kind.hpp"
 #include "tools/lsp/marks.hpp"
 #include "tools/lsp/plant_document.hpp"
 #include "tools/lsp/toml_lines.hpp"
@@ -66,7 +67,7 @@ Json plant_code_lenses(Workspace& workspace, const Json& params) {
   if (!text) return out;
   const Json uri = uri_of(path);
   const Json top = range_of(*text, 0, 0, workspace.encoding);
-  const bool test = is_test(path);
+  const bool test = runtime::named_test(path);
   const auto lines = lines_of(*text);
   bool expects = test;
   for (const TomlTable& table : tables_of(lines)) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "runtime/plant_file/toml_kind.hpp"
 #include "tools/cli/files.hpp"
 #include "tools/lsp/plant_document.hpp"
 #include "tools/lsp/toml_lines.hpp"
@@ -46,7 +47,7 @@ std::unique_ptr<const TomlDocument> read_toml(const Workspace& workspace, const 
 // The plant whose stations the file has: itself, or that which a test names.
 std::string plant_of(const TomlDocument& document) {
   const std::string_view named =
-      is_test(document.path) ? document.find(document.tables.front(), "plant") : "";
+      runtime::named_test(document.path) ? document.find(document.tables.front(), "plant") : "";
   return named.empty() ? document.path : tidy(beside(document.path, std::string(named)));
 }
 

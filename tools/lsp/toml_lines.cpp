@@ -24,9 +24,6 @@ std::vector<std::string_view> lines_of(std::string_view text) {
   }
 }
 
-bool is_test(std::string_view path) { return path.ends_with(".test.toml"); }
-bool is_campaign(std::string_view path) { return path.ends_with(".campaign.toml"); }
-
 std::string_view table_of(std::string_view row) {
   row = trimmed(row.substr(0, row.find('#')));
   if (!row.starts_with('[')) return {};

@@ -11,9 +11,6 @@ namespace ipos::tools::lsp {
 std::string_view trimmed(std::string_view text);
 std::vector<std::string_view> lines_of(std::string_view text);
 
-bool is_test(std::string_view path);
-bool is_campaign(std::string_view path);
-
 // "station.parameters" of "[station.parameters]" and "[[station.parameters]]"; else empty.
 std::string_view table_of(std::string_view row);
 // What stands before '='; empty without one.

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <map>
 
-#include "runtime/plant_file/read_toml.hpp"
+#include "runtime/plant_file/toml_sign.hpp"
 #include "stdlib/unit_names.hpp"
 #include "tools/cli/failure.hpp"
 
@@ -18,7 +18,7 @@ using runtime::place_of;
 using stdlib::Parameter;
 using stdlib::Service;
 
-constexpr std::string_view kKey = "ipos-parameters";
+constexpr std::string_view kKey = runtime::kParameterSetKey;
 constexpr int64_t kVersion = 1;
 
 constexpr uint16_t kLock = 8595;  // P803
@@ -57,6 +57,7 @@ class Reader {
   }
 
   void file(const toml::table& root) {
+    if (const auto why = runtime::wrong_kind(root, path_, {runtime::TomlKind::Parameters})) return error(why->place, why->text);
     for (const auto& [key, value] : root)
       if (key.str() != kKey && key.str() != "unit" && key.str() != "parameters")
         error({key.source().begin.line, key.source().begin.column},

@@ -102,7 +102,7 @@ std::vector<Files::Entry> PlantFiles::list() {
   for (const std::string& file : beside_it) {
     const std::string path = (folder / file).generic_string();
     if (file.ends_with(kSession)) add(path, Kind::Session, "");
-    if (!testing::is_test_file(file)) continue;
+    if (!runtime::named_test(file)) continue;
     const auto text = try_read_file(path);
     // By its text, so that a test with a mistake is still one of them.
     const auto tells_of = [&](const std::string& name) { return text->find(name) != std::string::npos; };
@@ -132,7 +132,7 @@ std::string PlantFiles::place_of_new(const std::string& file) const {
   const bool is_here = fs::path(file) == name || fs::path(file).lexically_normal() == place.lexically_normal();
   const std::string text = name.string();
   if (!is_here || text.starts_with('.') || !stdlib::is_plain(text) || text.find('\\') != std::string::npos ||
-      !(testing::is_test_file(text) || text.ends_with(kSession)))
+      !(runtime::named_test(text) || text.ends_with(kSession)))
     throw Mistake(fmt::format("'{}' is none of the plant's files; new ones are tests (NAME.test.toml) and sessions "
                               "(NAME.ipos) in the folder of the plant",
                               file));
@@ -161,7 +161,7 @@ Build PlantFiles::build() {
   CompileFlags flags = compile_;
   flags.record = &record;
   try {
-    if (!testing::is_test_file(path_)) {  // a plant that stands in a test is read with it
+    if (kind_of_file(path_) != runtime::TomlKind::Test) {  // a plant that stands in a test is read with it
       PlantInput input = read_plant_input(path_, flags);
       make_plant(input, runtime::FileUse::Look, {}, execution_of(), &record);  // tells what its units refuse
       for (const runtime::StationConfig& station : input.file.stations) build.stations.push_back(station.name);

@@ -32,7 +32,6 @@
 #include "tools/serve/plant_ports.hpp"
 #include "tools/serve/server.hpp"
 #include "tools/serve/sockets.hpp"
-#include "tools/test_file/read_tests.hpp"
 #include "tools/testing/debugged_test.hpp"
 
 namespace ipos::tools {
@@ -161,10 +160,10 @@ int serve_page(ServeFlags flags) {
     flags.session = std::make_shared<const serve::OpenedSession>(flags.file);
     flags.file = flags.session->plant();
     flags.test = flags.session->beside();
-  } else if (testing::is_test_file(flags.file)) {
+  } else if (kind_of_file(flags.file) == runtime::TomlKind::Test) {
     flags.test = sessions::OfTest{flags.file, flags.test_case};
   }
-  if (!flags.test_case.empty() && !testing::is_test_file(flags.file))
+  if (!flags.test_case.empty() && kind_of_file(flags.file) != runtime::TomlKind::Test)
     throw Failure(kUsage, "--case chooses a case of a test (NAME.test.toml)");
   PlantInput input;
   if (flags.test) {

@@ -102,7 +102,7 @@ void read_named_plant(PlantReader& reader, const toml::table& root, TestCase& te
   test.plant_path = beside(test.file, name);
   const auto text = load_file(test.plant_path);
   if (!text) return reader.error(place, fmt::format("plant {}: {}", test.plant_path, text.error()));
-  runtime::PlantFileResult plant = runtime::read_plant_file(*text);
+  runtime::PlantFileResult plant = runtime::read_plant_file(*text, test.plant_path);
   if (!plant.errors.empty()) {
     test.errors = std::move(plant.errors);
     test.errors_in = test.plant_path;
@@ -244,7 +244,7 @@ std::vector<TestCase> read_test_file(const std::string& path, const std::string&
   PlantReader reader;
   const auto root = runtime::parse_toml(reader, text);
   std::vector<Case> cases;
-  if (root && !runtime::refuse_campaign(reader, *root)) cases = read_cases(reader, *root);
+  if (root && !runtime::refuse_others(reader, *root, path, {runtime::TomlKind::Plant, runtime::TomlKind::Test})) cases = read_cases(reader, *root);
   std::set<std::string> names;
   for (const Case& one : cases) reader.unique(names, one.name, "case", one.place);
   if (!reader.result.errors.empty()) {

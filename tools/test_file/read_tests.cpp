@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <set>
 
+#include "runtime/plant_file/toml_kind.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/files.hpp"
 #include "tools/input/program.hpp"
@@ -21,7 +22,7 @@ bool is_plant_with_expectations(const std::string& path, const std::string& text
   const auto has_line = [&text](const std::string& line) {
     return text.starts_with(line) || text.find("\n" + line) != std::string::npos;
   };
-  return path.ends_with(".toml") && !is_test_file(path) && has_line("[[station]]") && has_line("[[expect]]");
+  return path.ends_with(".toml") && !runtime::named_test(path) && has_line("[[station]]") && has_line("[[expect]]");
 }
 
 // A plant whose own expectations a test looks at needs no run of its own.
@@ -41,8 +42,6 @@ std::vector<TestCase> tests_of(const std::string& path, const std::string& text)
 
 }  // namespace
 
-bool is_test_file(std::string_view path) { return path.ends_with(".test.toml"); }
-
 std::vector<TestCase> read_tests(const std::string& path) {
   if (!is_folder(path)) {
     if (!is_source(path) && !path.ends_with(".toml") && fs::exists(fs::symlink_status(path)))
@@ -56,7 +55,7 @@ std::vector<TestCase> read_tests(const std::string& path) {
   std::vector<TestCase> tests;
   for (const std::string& file : files) {
     const std::string text = read_file(file);
-    if (!is_test_file(file) && !is_plant_with_expectations(file, text) &&
+    if (!runtime::named_test(file) && !is_plant_with_expectations(file, text) &&
         !(is_source(file) && expects_something(text)))
       continue;
     for (TestCase& test : tests_of(file, text)) tests.push_back(std::move(test));

@@ -9,8 +9,6 @@
 
 namespace ipos::tools::testing {
 
-bool is_test_file(std::string_view path);  // *.test.toml
-
 // The tests of a file or folder, in the order of their names. A folder is searched for *.test.toml, for programs
 // that expect something, and for plants with [[expect]] that no test of the folder looks at itself. A malformed file
 // is one test with errors. A path that is not there is a Failure.

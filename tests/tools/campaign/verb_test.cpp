@@ -59,24 +59,6 @@ class CampaignVerb : public testing::Test {
   TemporaryFolder folder_;
 };
 
-// Whoever takes a plant or a test tells which verb takes a campaign; the other way round a campaign needs one of the two.
-TEST_F(CampaignVerb, OtherVerbsSayThatItIsACampaign) {
-  const std::vector<std::vector<std::string>> verbs{{"run"}, {"test"}, {"debug"}, {"serve", "--port", "0"}, {"fmu", "-o", "x.fmu"},
-                                                    {"bus", "plan"}, {"bus", "dbc"}, {"param", "list"}};
-  for (const std::string name : {"c.campaign.toml", "renamed.toml"}) {
-    folder_.write(name, kCampaign);
-    for (std::vector<std::string> words : verbs) {
-      words.push_back(name);
-      const CommandResult result = run_ipos(words, folder_.path());
-      EXPECT_EQ(result.exit_code, 65) << words.front() << ' ' << result.err;
-      const std::string said = result.out + result.err;
-      EXPECT_NE(said.find(name + ":2:7: error: this is a campaign: `ipos campaign run FILE --out DIR`"), std::string::npos) << words.front() << ' ' << said;
-      EXPECT_EQ(said.find("unknown key"), std::string::npos) << "one mistake, not one for each key: " << said;
-    }
-  }
-  EXPECT_NE(campaign({"plan", "p.toml"}).err.find("a campaign has either plant = "), std::string::npos);
-}
-
 TEST_F(CampaignVerb, PlanEndsWithTheNumberOfCases) {
   const auto plan = campaign({"plan", "c.campaign.toml"});
   EXPECT_EQ(plan.exit_code, 0) << plan.err;
