@@ -31,7 +31,7 @@ TEST(LanguageServer, AnswersThePackagesOfEditors) {
   const Package& package = clients();
   if (!package.missing.empty()) GTEST_SKIP() << package.missing;
   ASSERT_EQ(package.broken, "");
-  expect_node_passed(shell(package.folder, kProgram + "node --test --test-reporter=tap lsp.test.mjs"), 12);
+  expect_node_passed(shell(package.folder, kProgram + "node --test --test-reporter=tap lsp.test.mjs"), 13);
 }
 
 class Extension : public ::testing::Test {

@@ -120,6 +120,35 @@ test("diagnostics come with code, place and notes, and go when they are mended",
     await published("MAIN.IPC", (all) => !all.some((one) => one.severity === 1));
   }));
 
+test("what no test notices appears beside the program when the tests were tried, and goes with a change", async () => {
+  const cache = mkdtempSync(join(tmpdir(), "ipos-cache-"));
+  process.env.XDG_CACHE_HOME = cache;
+  try {
+    await session(async ({ connection, folder, open, uri, published }) => {
+      const text = "long a, b;\nmain()\n{\n    a = 5;\n    b = 6;\n}\n// expect a == 5\n";
+      writeFileSync(join(folder, "T.IPC"), text);
+      await open("T.IPC");
+      const ours = (all) => all.filter((one) => one.source === "ipos test");
+      await published("T.IPC", (all) => ours(all).length === 0);
+      const tried = spawnSync(program, ["test", "--mutate", "T.IPC"], { cwd: folder, encoding: "utf8" });
+      assert.strictEqual(tried.status, 1, tried.stderr);
+      const shown = ours(await published("T.IPC", (all) => ours(all).length > 0));
+      assert.deepStrictEqual(
+        shown.map((one) => `${one.severity} ${one.range.start.line}:${one.range.start.character} ${one.message}`),
+        ["3 4:4 no test notices: removed: b = 6;", "3 4:8 no test notices: 6 became 7"],
+      );
+      await connection.sendNotification(lsp.DidChangeTextDocumentNotification.type, {
+        textDocument: { uri: uri("T.IPC"), version: 2 },
+        contentChanges: [{ text: text.replace("6", "8") }],
+      });
+      await published("T.IPC", (all) => ours(all).length === 0);
+    });
+  } finally {
+    delete process.env.XDG_CACHE_HOME;
+    rmSync(cache, { recursive: true });
+  }
+});
+
 test("hover tells meaning, number, unit and manual page", () =>
   session(async ({ connection, open, place }) => {
     await open("MAIN.IPC");

@@ -46,6 +46,41 @@ TEST(LspDiagnostics, AllOfTheProgramAndItsHeaders) {
   EXPECT_EQ(client.codes("/p/h.h").size(), 1U) << "the disk counts again";
 }
 
+// 1-based places, as the tests of a program keep them; the ü is one unit of UTF-16 and two bytes.
+TEST(LspDiagnostics, WhatNoTestNoticesIsInformation) {
+  const std::string text = "long a;\nmain() { a = 5;/*\u00fc*/ a = 66; }\n";
+  std::vector<tools::Survivor> kept{{2, 14, "5 became 6", true}, {2, 27, "66 became 72", false}, {9, 1, "a line that is not there", true}};
+  Client client;
+  client.server().show_survivors([&](const std::string& path, std::string_view of) {
+    return path == kPath && of == text ? kept : std::vector<tools::Survivor>();
+  });
+  client.open(kPath, text);
+  const auto shown = [&] {
+    std::vector<std::string> all;
+    for (const Json& one : client.diagnostics["file://" + kPath])
+      if (one["source"] == "ipos test") {
+        EXPECT_EQ(one["severity"], 3);
+        all.push_back(one["range"].dump() + one["message"].get<std::string>());
+      }
+    return all;
+  };
+  const auto range = [](int begin, int end) {
+    return Json{{"start", {{"line", 1}, {"character", begin}}}, {"end", {{"line", 1}, {"character", end}}}}.dump();
+  };
+  EXPECT_EQ(shown(), (std::vector<std::string>{range(13, 14) + "no test notices: 5 became 6", range(25, 27) + "no test reaches: 66 became 72"}));
+
+  kept.pop_back();
+  kept.pop_back();
+  client.settle();
+  EXPECT_EQ(shown().size(), 2U) << "nobody has looked";
+  client.server().look_at_survivors();
+  client.settle();
+  EXPECT_EQ(shown().size(), 1U);
+
+  client.notify("textDocument/didChange", {{"textDocument", {{"uri", "file://" + kPath}}}, {"contentChanges", {{{"text", text + "\n"}}}}});
+  EXPECT_TRUE(shown().empty()) << "tests have not seen this text";
+}
+
 // As vscode-languageserver-textdocument does it: CR LF, LF and CR end lines, a character behind the end of a line is its
 // end, in front of the CR.
 size_t offset_in_document(const std::string& text, const Json& position) {

@@ -12,6 +12,7 @@
 #include "tools/cli/whole_bytes.hpp"
 #include "tools/lsp/server.hpp"
 #include "tools/lsp_base/transport.hpp"
+#include "tools/survivors/survivors.hpp"
 
 namespace ipos::tools {
 namespace {
@@ -22,16 +23,23 @@ void send(const lsp::Json& message) {
   if (!write_all(STDOUT_FILENO, text.data(), text.size())) throw Failure(kIoError, "the editor does not listen any more");
 }
 
+constexpr int kLookEvery = 1000;  // ms
+
 // Reads all there is before each answer, so that a cancellation overtakes what it cancels and many changes
 // give one compilation.
 int serve() {
   lsp::Server server(try_read_file, send);
+  server.show_survivors(kept_survivors);
   lsp::MessageReader reader;
   char buffer[65536];
   bool open = true;
   while (!server.ended() && (open || server.waiting())) {
     while (open && (readable(STDIN_FILENO, 0) || !server.run())) {
       if (server.ended()) return server.exit_code();
+      if (!readable(STDIN_FILENO, kLookEvery)) {
+        server.look_at_survivors();
+        continue;
+      }
       const ssize_t count = read(STDIN_FILENO, buffer, sizeof buffer);
       if (count < 0 && errno == EINTR) continue;
       open = count > 0;

@@ -5,6 +5,7 @@
 #include "compiler/diag/places.hpp"
 #include "compiler/format/format.hpp"
 #include "tools/lsp/features.hpp"
+#include "tools/lsp/toml_lines.hpp"
 
 namespace ipos::tools::lsp {
 namespace {
@@ -103,6 +104,28 @@ std::map<std::string, Json> diagnostics_of(const Workspace& workspace, const Pro
     const compiler::Position at = program.compiled.sources->position(diagnostic.span.begin);
     const std::string path = at.file == nullptr || at.file->path.empty() ? program.path : clean(*at.file);
     out[path].push_back(message(diagnostic, program, ranges));
+  }
+  return out;
+}
+
+Json diagnostics_of(const Workspace& workspace, const std::string& path, const std::vector<Survivor>& survivors) {
+  Json out = Json::array();
+  const auto text = survivors.empty() ? std::nullopt : workspace.text(path);
+  if (!text) return out;
+  const auto lines = lines_of(*text);
+  for (const Survivor& one : survivors) {
+    if (one.line == 0 || one.line > lines.size() || one.column == 0) continue;
+    const std::string_view row = lines[one.line - 1];
+    const size_t begin = std::min<size_t>(one.column - 1, row.size());
+    size_t end = begin;
+    while (end < row.size() && is_word(row[end])) ++end;
+    if (end == begin && end < row.size()) ++end;
+    const auto start = static_cast<uint32_t>(row.data() - text->data());
+    out.push_back({{"range", range_of(*text, start + static_cast<uint32_t>(begin), start + static_cast<uint32_t>(end), workspace.encoding)},
+                   {"severity", 3},
+                   {"code", "mutate"},
+                   {"source", "ipos test"},
+                   {"message", compiler::printable((one.reached ? "no test notices: " : "no test reaches: ") + one.text)}});
   }
   return out;
 }

@@ -4,6 +4,7 @@
 
 #include "stdlib/parameters.hpp"
 #include "tools/lsp/workspace.hpp"
+#include "tools/survivors/survivors.hpp"
 
 namespace ipos::tools::lsp {
 
@@ -38,6 +39,9 @@ Json header_text(Workspace& workspace, const Json& params);
 
 // The messages of a program by the path of the file they are about.
 std::map<std::string, Json> diagnostics_of(const Workspace& workspace, const Program& program);
+
+// The mistakes that no test has noticed, as messages of a source.
+Json diagnostics_of(const Workspace& workspace, const std::string& path, const std::vector<Survivor>& survivors);
 
 // In the words of a hover; the place in a program gives the number of a variable.
 std::string describe(const Program& program, const compiler::IndexedSymbol& symbol,

@@ -243,6 +243,13 @@ void Server::publish() {
         if (programs.size() == 1 || told[path].insert(one.dump()).second) target.push_back(std::move(one));
     }
   }
+  survivors_.clear();
+  for (auto& [path, messages] : all) {
+    if (path.ends_with(".toml")) continue;
+    std::vector<Survivor> survivors = survivors_of(path);
+    for (Json& one : diagnostics_of(workspace_, path, survivors)) messages.push_back(std::move(one));
+    survivors_.emplace(path, std::move(survivors));
+  }
   for (const std::string& path : published_) all.try_emplace(path, Json::array());
   for (auto& [path, messages] : all) {
     const bool empty = messages.empty();
@@ -255,6 +262,16 @@ void Server::publish() {
     else
       published_.insert(path);
   }
+}
+
+std::vector<Survivor> Server::survivors_of(const std::string& path) const {
+  const auto text = read_survivors_ ? workspace_.text(path) : std::nullopt;
+  return text ? read_survivors_(path, *text) : std::vector<Survivor>();
+}
+
+void Server::look_at_survivors() {
+  outdated_ = outdated_ || std::any_of(survivors_.begin(), survivors_.end(),
+                                       [this](const auto& shown) { return survivors_of(shown.first) != shown.second; });
 }
 
 // Some editors take another spelling of a URI for another document, so it is named as it was opened.

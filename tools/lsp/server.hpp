@@ -6,8 +6,12 @@
 #include <set>
 
 #include "tools/lsp/workspace.hpp"
+#include "tools/survivors/survivors.hpp"
 
 namespace ipos::tools::lsp {
+
+// Mistakes that no test of a source with this text has noticed.
+using ReadSurvivors = std::function<std::vector<Survivor>(const std::string& path, std::string_view text)>;
 
 class Server {
  public:
@@ -15,12 +19,17 @@ class Server {
   Server(ReadFile read_file, std::function<void(const Json&)> send)
       : workspace_(std::move(read_file)), send_(std::move(send)) {}
 
+  // Shows them among the messages of sources.
+  void show_survivors(ReadSurvivors read) { read_survivors_ = std::move(read); }
+
   // Takes a message; it is answered by run(). A cancellation takes effect on what waits.
   void receive(std::string_view body);
   // Answers the next message that waits; when none does, tells what changes mean for the diagnostics. False
   // when there was nothing to do.
   bool run();
   bool waiting() const { return !queue_.empty(); }
+  // To be called now and then while the editor says nothing: tests may have been tried again.
+  void look_at_survivors();
 
   bool ended() const { return ended_; }
   // After exit: 0 when shutdown came before it, as the protocol wants.
@@ -36,9 +45,12 @@ class Server {
   void respell(Json& value) const;
   void refuse(const Json& id, ErrorCode code, const std::string& message);
   void publish();
+  std::vector<Survivor> survivors_of(const std::string& path) const;
 
   Workspace workspace_;
   std::function<void(const Json&)> send_;
+  ReadSurvivors read_survivors_;
+  std::map<std::string, std::vector<Survivor>> survivors_;  // shown, by path
   std::deque<Json> queue_;
   std::map<std::string, std::string> spellings_;  // of open documents: ours, and that of the editor where it differs
   std::set<std::string> published_;  // paths with messages shown

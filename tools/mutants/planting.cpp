@@ -77,6 +77,14 @@ Planting::Planting(const std::vector<testing::TestCase>& tests, const CompileFla
   take_marks();
 }
 
+std::map<std::string, std::string> Planting::sources() const {
+  std::map<std::string, std::string> sources;
+  for (const auto& program : programs_)
+    for (const auto& file : program->sources().files())
+      if (!file->path.empty()) sources.emplace(plain(file->path), file->text);
+  return sources;
+}
+
 void Planting::find(PlantedProgram& program) {
   const compiler::SourceMap& sources = program.sources();
   for (size_t n = 0; n < program.changes().size(); ++n) {

@@ -57,6 +57,8 @@ class Planting {
 
   // In the order of files and lines; equivalent ones have their fate.
   std::vector<Planted>& mutants() { return mutants_; }
+  // The sources and headers of the programs, by the paths that mutants have.
+  std::map<std::string, std::string> sources() const;
   // Marks that say nothing, as messages.
   const std::vector<std::string>& notes() const { return notes_; }
 

@@ -110,6 +110,7 @@ Trial try_mutants(const std::vector<TestCase>& tests, const testing::SuiteOption
   }
   Planting planting(tests, options.compile);
   trial.notes = planting.notes();
+  for (auto& [path, text] : planting.sources()) trial.sources.push_back({path, text});
   trials.run(planting, on_done);
   trial.mutants = results_of(planting);
   return trial;

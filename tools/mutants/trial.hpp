@@ -10,8 +10,14 @@
 
 namespace ipos::tools::mutants {
 
+struct Source {
+  std::string path;
+  std::string text;
+};
+
 struct Trial {
   std::vector<Mutant> mutants;                 // in the order of files and lines
+  std::vector<Source> sources;                 // what was planted into, as it was read
   std::vector<std::string> notes;              // about marks
   std::vector<testing::TestResult> not_clean;  // tests that do not pass without a mistake; nothing was planted then
 };

@@ -13,6 +13,7 @@
 #include "tools/cli/terminal.hpp"
 #include "tools/mutants/reports.hpp"
 #include "tools/mutants/trial.hpp"
+#include "tools/survivors/survivors.hpp"
 #include "tools/testing/report_words.hpp"
 #include "tools/testing/reports.hpp"
 
@@ -37,6 +38,21 @@ void tell_notes(const std::vector<std::string>& notes) {
   for (const std::string& note : notes) fmt::print(stderr, "ipos: note: {}\n", compiler::printable(note));
 }
 
+// For editors. A source of which not all was tried keeps what it had.
+void keep(const mutants::Trial& trial) {
+  for (const mutants::Source& source : trial.sources) {
+    std::vector<Survivor> survivors;
+    bool whole = true;
+    for (const Mutant& mutant : trial.mutants) {
+      if (mutant.file != source.path) continue;
+      whole = whole && mutant.fate != mutants::Fate::NotRun;
+      if (mutants::survives(mutant))
+        survivors.push_back({mutant.place.line, mutant.place.column, mutant.text, mutant.fate == mutants::Fate::Missed});
+    }
+    if (whole) keep_survivors(source.path, source.text, survivors);
+  }
+}
+
 }  // namespace
 
 int mutate(const std::vector<testing::TestCase>& tests, const MutateFlags& flags) {
@@ -57,6 +73,7 @@ int mutate(const std::vector<testing::TestCase>& tests, const MutateFlags& flags
   if (progress) fmt::print(stderr, "\r\033[K");
   if (!trial.not_clean.empty()) return refuse(trial.not_clean);
   tell_notes(trial.notes);
+  keep(trial);
   const bool alone = is_standard_output(flags.junit) || is_standard_output(flags.json);
   if (!alone && flags.github) fmt::print("{}", mutants::github_report(trial.mutants, flags.root));
   if (!alone) fmt::print("{}", mutants::text_report(trial.mutants));

@@ -93,7 +93,7 @@ function makeTask(definition: launch.TaskDefinition & vscode.TaskDefinition): vs
     `${definition.task} ${definition.file ?? (definition.task === "mutate" ? "the open folder" : "the open file")}`,
     "ipos",
     new vscode.ProcessExecution(command, args),
-    launch.taskMatcher(definition),
+    launch.taskMatchers(definition),
   );
   if (definition.task === "build") task.group = vscode.TaskGroup.Build;
   return task;

@@ -40,7 +40,7 @@ export interface TaskDefinition {
   args?: string[];
 }
 
-// `mutate` is of the tests of a folder: what no test notices is a problem in its program.
+// `mutate` is of the tests of a folder.
 export function taskCommand(definition: TaskDefinition, settings: Settings, open: { file: string; folder: string }): Command {
   const mutate = definition.task === "mutate";
   const file = definition.file ?? (mutate ? open.folder : open.file);
@@ -49,8 +49,9 @@ export function taskCommand(definition: TaskDefinition, settings: Settings, open
   return { command: settings.path, args: [...verb, file, ...own, ...(definition.args ?? [])] };
 }
 
-export function taskMatcher(definition: TaskDefinition): string {
-  return definition.task === "mutate" ? "$ipos-mutate" : "$ipos";
+// What no test notices is shown by the language server.
+export function taskMatchers(definition: TaskDefinition): string[] {
+  return definition.task === "mutate" ? [] : ["$ipos"];
 }
 
 export interface LaunchConfiguration {

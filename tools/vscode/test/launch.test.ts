@@ -52,8 +52,8 @@ test("tasks name the verb, the file and the settings of the compiler", () => {
   assert.deepStrictEqual(launch.taskCommand({ task: "mutate" }, { ...settings, unit: "", warnings: [], atomic: false }, open).args, [
     "test", "--mutate", "/p", "-Iinc", "-DA=1",
   ]);
-  assert.strictEqual(launch.taskMatcher({ task: "build" }), "$ipos");
-  assert.strictEqual(launch.taskMatcher({ task: "mutate" }), "$ipos-mutate");
+  assert.deepStrictEqual(launch.taskMatchers({ task: "build" }), ["$ipos"]);
+  assert.deepStrictEqual(launch.taskMatchers({ task: "mutate" }), []);
 });
 
 test("the debugger is ipos dap, for a program or a plant", () => {
