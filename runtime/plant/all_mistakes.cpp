@@ -38,8 +38,8 @@ Errors further_mistakes(const PlantFile& file, Images programs) {
       if (plant.stations[n].name == signal.station) return signal.kind != SignalKind::Variable || images[n];
     return false;
   };
-  for (const Stimulus& stimulus : file.stimuli)
-    if (is_known(stimulus.signal)) plant.stimuli.push_back(stimulus);
+  for (const Stimulus& stimulus : file.stimuli)  // whether any other signal can be written depends on the shaft
+    if (is_known(stimulus.signal) && stimulus.signal.kind != SignalKind::Any) plant.stimuli.push_back(stimulus);
   for (const Expectation& expectation : file.expectations)
     if (is_known(expectation.signal)) plant.expectations.push_back(expectation);
   Errors errors;

@@ -41,11 +41,14 @@ void Surroundings::connect(const PlantFile& file, const PlantParts& plant, std::
       for (const Conveyor& conveyor : conveyors_)
         if (conveyor.station->config().name == row.belt)
           barriers_.push_back({*input, &conveyor.belt, conveyor.belt.way_to(row.at), row.active_high});
-  for (const Stimulus& stimulus : file.stimuli)
-    if (const auto signal = find(stimulus.signal, stimulus.place)) {
-      due_.emplace(stimulus.at, Due{scripts_.size(), 0, {}});
-      scripts_.push_back({*signal, stimulus});
-    }
+  for (Stimulus stimulus : file.stimuli) {
+    std::string why;
+    const auto signal = signals::find_target(plant, stimulus, why);
+    if (!why.empty()) errors.push_back({stimulus.place, why});
+    if (!signal) continue;
+    due_.emplace(stimulus.at, Due{scripts_.size(), 0, {}});
+    scripts_.push_back({*signal, std::move(stimulus)});
+  }
 }
 
 const Belt* Surroundings::belt_of(const Station& station) const {

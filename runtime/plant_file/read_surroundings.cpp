@@ -1,5 +1,6 @@
 // What drives the inputs of stations: [[stimulus]], [[wire]] and [[switch]] of the plant file.
 #include <algorithm>
+#include <set>
 
 #include "runtime/plant_file/plant_reader.hpp"
 #include "runtime/plant_file/state_names.hpp"
@@ -16,9 +17,21 @@ constexpr ActionKey kActions[] = {{"set", Stimulus::Action::Set},
                                   {"pulse", Stimulus::Action::Pulse},
                                   {"release", Stimulus::Action::Release}};
 
+// A number, or a text with a unit.
+bool read_written(PlantReader& reader, const toml::node& node, std::string_view key, Stimulus& stimulus) {
+  if (const auto* text = node.as_string())
+    stimulus.written = text->get();
+  else if (node.is_number())
+    stimulus.written = fmt::format("{}", *node.value<double>());
+  else
+    reader.error(place_of(node), fmt::format("{} of a signal is a number, or a text with its unit", key));
+  return !stimulus.written.empty();
+}
+
 // The value of set, force or pulse in the form the signal has. False with an error.
 bool read_value(PlantReader& reader, const toml::node& node, std::string_view key, Stimulus& stimulus) {
   Signal& signal = stimulus.signal;
+  if (signal.kind == SignalKind::Any) return read_written(reader, node, key, stimulus);
   if (signal.kind == SignalKind::Parameter)
     return reader.parameter_value(node, reader.unit_of(signal.station), signal.name, stimulus.value);
   if (signal.kind == SignalKind::Switch) {
@@ -96,8 +109,8 @@ void read_times(PlantReader& reader, const toml::table& table, std::string_view 
 void read_stimuli(PlantReader& reader, const toml::table& table) {
   constexpr std::string_view kWhat = "a [[stimulus]]";
   reader.known_keys(table, "[[stimulus]]",
-                    {"station", "at", "variable", "parameter", "input", "analog", "switch", "set", "force", "pulse",
-                     "release", "for", "every", "times"});
+                    {"station", "at", "variable", "parameter", "input", "analog", "switch", "signal", "set", "force",
+                     "pulse", "release", "for", "every", "times"});
   Stimulus stimulus;
   stimulus.place = place_of(table);
   stimulus.signal.station = reader.station(table, kWhat);
@@ -186,6 +199,7 @@ void check_drivers(PlantReader& reader) {
     std::string_view by;
   };
   std::vector<Driven> driven;
+  std::set<std::string> machine_driven;  // "hoist.load_torque"
   const auto driver_of = [&](const Signal& signal) {
     const auto found = std::find_if(driven.begin(), driven.end(), [&](const Driven& other) {
       return signal.kind == SignalKind::Input && other.signal.station == signal.station &&
@@ -204,10 +218,15 @@ void check_drivers(PlantReader& reader) {
   for (const PositionSwitch& added : plant.switches) drive(added.input, kWireOrSwitch, added.place);
   for (const LightBarrier& barrier : plant.barriers) drive(barrier.input, kWireOrSwitch, barrier.place);
   for (const MachineConfig& machine : plant.machines)
-    for (const MachineWire& wire : machine.outputs)
+    for (const MachineWire& wire : machine.outputs) {
+      machine_driven.insert(wire.signal);
       if (const auto input = input_of(wire.signal)) drive(*input, "machine", wire.place);
+    }
   for (const Stimulus& stimulus : plant.stimuli) {
-    const auto by = stimulus.action == Stimulus::Action::Set ? driver_of(stimulus.signal) : std::string_view();
+    if (stimulus.action != Stimulus::Action::Set) continue;
+    const bool by_machine = stimulus.signal.kind == SignalKind::Any &&
+                            machine_driven.contains(fmt::format("{}.{}", stimulus.signal.station, stimulus.signal.name));
+    const std::string_view by = by_machine ? "machine" : driver_of(stimulus.signal);
     if (!by.empty())
       reader.error(stimulus.place, fmt::format("{} of {} hangs on a {}: force it, do not set it", stimulus.signal.name,
                                                stimulus.signal.station, by));
@@ -217,7 +236,7 @@ void check_drivers(PlantReader& reader) {
 }  // namespace
 
 bool read_stimulus(PlantReader& reader, const toml::table& table, std::string_view what, Stimulus& stimulus) {
-  if (!reader.signal(table, what, {"variable", "parameter", "input", "analog", "switch"}, stimulus.signal))
+  if (!reader.signal(table, what, {"variable", "parameter", "input", "analog", "switch", "signal"}, stimulus.signal))
     return false;
   read_action(reader, table, what, stimulus);
   read_times(reader, table, what, stimulus);

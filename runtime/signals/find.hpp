@@ -11,6 +11,7 @@
 
 #include <tl/expected.hpp>
 
+#include "runtime/plant_file/plant_file.hpp"
 #include "runtime/plant_file/signal.hpp"
 #include "runtime/signals/signal.hpp"
 #include "runtime/station/plant_parts.hpp"
@@ -68,6 +69,8 @@ tl::expected<std::vector<Signal>, std::string> find_signals(const runtime::Plant
 // What a plant file names; nothing and why when a station or gateway has no such thing. `why` stays empty where there is
 // no such station, which the reader of the file has told.
 std::optional<Signal> find_signal(const runtime::PlantParts& plant, const runtime::Signal& named, std::string& why);
+// What a stimulus acts on. Where it names a signal of any kind, its value is read here, as only the signal knows its unit.
+std::optional<Signal> find_target(const runtime::PlantParts& plant, runtime::Stimulus& stimulus, std::string& why);
 
 // What an expectation on it compares: of `signal = ...` the number shown, rounded; of `state = ...` and the others the
 // sample.

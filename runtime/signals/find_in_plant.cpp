@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <utility>
 
 #include "runtime/signals/gateways.hpp"
@@ -158,6 +160,36 @@ std::optional<Signal> find_of_station(Station& station, const runtime::Signal& n
   return found;
 }
 
+// The key of a stimulus that names what is of this group; empty: none but `signal`.
+std::string_view own_key(Group group) {
+  switch (group) {
+    case Group::Variable:
+    case Group::SystemVariable: return "variable";
+    case Group::Parameter: return "parameter";
+    case Group::Input: return "input";
+    case Group::Analog: return "analog";
+    default: return {};
+  }
+}
+
+// A number counts in the signal's unit.
+Refusal read_written(const Signal& signal, Stimulus& stimulus) {
+  const std::string& text = stimulus.written;
+  double shown = 0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), shown);
+  int64_t sample = 0;
+  if (status == std::errc() && end == text.data() + text.size()) {
+    sample = std::llround(std::clamp(shown / signal.factor, -1e15, 1e15));
+  } else {
+    const auto parsed = signal.parse(text);
+    if (!parsed) return parsed.error();
+    sample = parsed->sample;
+  }
+  if (auto wrong = signal.check(sample)) return wrong;
+  stimulus.value = static_cast<int32_t>(sample);
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<Signal> find_signal(const PlantParts& plant, const runtime::Signal& named, std::string& why) {
@@ -167,6 +199,19 @@ std::optional<Signal> find_signal(const PlantParts& plant, const runtime::Signal
     if (station->config().name == named.station) return find_of_station(*station, named, why);
   if (plant.find_bus(named.station) != nullptr) return find_of_line(plant, named, why);
   return std::nullopt;
+}
+
+std::optional<Signal> find_target(const PlantParts& plant, Stimulus& stimulus, std::string& why) {
+  auto signal = find_signal(plant, stimulus.signal, why);
+  if (!signal || stimulus.signal.kind != SignalKind::Any) return signal;
+  if (const std::string_view key = own_key(signal->group); !key.empty())
+    why = fmt::format("{} has a key of its own: write {} = \"{}\"", stimulus.signal.name, key, stimulus.signal.name);
+  else if (!signal->is_writable())
+    why = fmt::format("{} of {} can only be read", stimulus.signal.name, stimulus.signal.station);
+  else if (stimulus.action != Stimulus::Action::Release)
+    why = read_written(*signal, stimulus).value_or("");
+  if (!why.empty()) return std::nullopt;
+  return signal;
 }
 
 int32_t value_for(const runtime::Signal& named, const Signal& signal) {

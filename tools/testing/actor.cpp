@@ -33,10 +33,10 @@ void Actor::plan(const Item& item, const Step& step, Time at) {
   // What holds longer than a moment is a stimulus of the plant.
   if (const auto* stimulus = std::get_if<runtime::Stimulus>(&step)) {
     std::string why;
-    const auto signal = signals::find_signal(plant_, stimulus->signal, why);
+    runtime::Stimulus timed = *stimulus;
+    const auto signal = signals::find_target(plant_, timed, why);
     if (!signal) return on_problem_(item, why);
     if (stimulus->action != runtime::Stimulus::Action::Set || stimulus->every != 0) {
-      runtime::Stimulus timed = *stimulus;
       timed.at = at;
       return plant_.surroundings().add(*signal, timed);
     }
@@ -74,10 +74,10 @@ void Actor::act(const Item& item, const Step& step, Time at) {
   if (problem) on_problem_(item, *problem);
 }
 
-runtime::Refusal Actor::apply(const runtime::Stimulus& stimulus) {
+runtime::Refusal Actor::apply(runtime::Stimulus stimulus) {
   using Act = runtime::Stimulus::Action;
   std::string why;
-  const auto signal = signals::find_signal(plant_, stimulus.signal, why);
+  const auto signal = signals::find_target(plant_, stimulus, why);
   if (!signal) return why;
   if (stimulus.action == Act::Force) return actions_.force(*signal, stimulus.value, stimulus.length);
   if (stimulus.action != Act::Release) return actions_.set(*signal, stimulus.value);

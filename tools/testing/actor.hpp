@@ -30,7 +30,7 @@ class Actor {
  private:
   runtime::Station& station(const std::string& name);
   void act(const Item& item, const Step& step, Time at);
-  runtime::Refusal apply(const runtime::Stimulus& stimulus);
+  runtime::Refusal apply(runtime::Stimulus stimulus);
   void set_word(const ProcessDataStep& step);
   runtime::Refusal plant_fault(runtime::FaultConfig fault, Time at);
   runtime::Refusal repair(const runtime::FaultConfig& fault);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "runtime/signals/find.hpp"
 #include "runtime/signals/states.hpp"
 
 namespace ipos::tools::testing {
@@ -44,6 +45,8 @@ std::vector<runtime::PlantError> Script::resolve() {
       Subject acted_on;  // shown where something is wrong
       acted_on.signal = stimulus->signal;
       probe_.follow(acted_on, why);
+      runtime::Stimulus read = *stimulus;
+      if (why.empty()) signals::find_target(plant_, read, why);
     }
     if (!why.empty()) errors.push_back({item.place, why});
   }

@@ -51,6 +51,32 @@ TEST(LibraryShaft, ALoadTorqueIsCarriedByTheMotor) {
   EXPECT_EQ(torque(plant), 0) << "without power there is none";
 }
 
+// A number counts in Nm. A pulse gives back what was there.
+TEST(LibraryShaft, AStimulusOfThePlantFileSetsTheLoad) {
+  const auto stimulus = [](const char* at, const std::string& rows) {
+    return std::string("[[stimulus]]\nstation = \"u\"\nsignal = \"load_torque\"\nat = \"") + at + "\"\n" + rows;
+  };
+  const OpenedPlant plant(kTurning + stimulus("1s", "set = \"-4.5 Nm\"\n") + stimulus("1100ms", "pulse = 6\nfor = \"50ms\"\n") +
+                          stimulus("1200ms", "set = 2.5\n") + stimulus("1300ms", "force = 1\n") + stimulus("1310ms", "set = 0\n") +
+                          stimulus("1400ms", "release = true\n"));
+  const auto carries = [&](int64_t at, double load) {
+    plant.run(at);
+    EXPECT_NEAR(torque(plant), 5 + 100 * load / kRated, 0.01) << at;
+  };
+  carries(999, 0);
+  carries(1'002, -4.5);
+  carries(1'140, 6);
+  carries(1'160, -4.5);
+  carries(1'250, 2.5);
+  carries(1'390, 1);  // what is forced is written again in each millisecond
+}
+
+TEST(LibraryShaft, AStimulusSetsTheSpeedOfADrivenShaft) {
+  const OpenedPlant plant(std::string(kTurning) + "driven = true\n[[stimulus]]\nstation = \"u\"\nsignal = \"shaft_speed\"\nat = \"0s\"\nset = \"999.5 rpm\"\n");
+  plant.run(10);
+  EXPECT_EQ(plant.value(plant.find("shaft_speed")), 999'500);
+}
+
 TEST(LibraryShaft, ADrivenShaftHasItsSpeedFromOutside) {
   const OpenedPlant plant(std::string(kTurning) + "driven = true\n");
   const uint32_t speed = plant.find("shaft_speed");

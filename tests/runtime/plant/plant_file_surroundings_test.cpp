@@ -111,6 +111,7 @@ TEST(PlantFileSurroundings, MistakesOfActionsAndTimes) {
       {{"^" + kStimulusHead + "variable = 'x'\n", "a [[stimulus]] needs set, force, pulse or release"},
        {"^" + kStimulusHead + "variable = 'x'\npulse = 1\n", "a pulse needs for"},
        {"^" + kStimulusHead + "set = 1\n", "a [[stimulus]] needs one of variable, parameter, input, analog"},
+       {kStimulusHead + "signal = 'load_torque'\nset = ^true\n", "set of a signal is a number, or a text with its unit"},
        {"^[[stimulus]]\nat = '1ms'\nvariable = 'x'\nset = 1\n", "a [[stimulus]] needs station"},
        {"^[[stimulus]]\nstation = 'u'\nvariable = 'x'\nset = 1\n", "a [[stimulus]] needs at"},
        {"[[stimulus]]\nstation = ^'v'\nat = '1ms'\nvariable = 'x'\nset = 1\n", "there is no station 'v'"}});

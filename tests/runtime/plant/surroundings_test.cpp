@@ -350,6 +350,30 @@ TEST(PlantFile, MissingVariablesAndParametersAreErrors) {
   EXPECT_EQ(errors[1].text, "station 'u' has no variable 'x'");
 }
 
+TEST(PlantFile, AStimulusOfASignalIsRefusedAtItsTable) {
+  const std::string head = "[[station]]\nname = \"u\"\nunit = \"mdxb\"\n";
+  const std::string stimulus = "[[stimulus]]\nstation = \"u\"\nat = \"1ms\"\n";
+  for (const auto& [rows, message] : std::vector<std::pair<std::string, std::string>>{
+           {"signal = \"speed\"\nset = 1\n", "speed of u can only be read"},
+           {"signal = \"shaft_speed\"\nset = 1\n", "shaft_speed of u can only be read"},
+           {"signal = \"P130\"\nset = 1\n", "P130 has a key of its own: write parameter = \"P130\""},
+           {"signal = \"DI00\"\nset = 1\n", "DI00 has a key of its own: write input = \"DI00\""},
+           {"signal = \"AI1\"\nset = \"5 V\"\n", "AI1 has a key of its own: write analog = \"AI1\""},
+           {"signal = \"H10\"\nset = 1\n", "H10 has a key of its own: write variable = \"H10\""},
+           {"signal = \"load_torque\"\nset = \"5 bar\"\n", "'5 bar' is no number"},
+           {"signal = \"load_torque\"\nset = 1e9\n", "10000000000000 is out of range for a value of the drive: -2147483648..2147483647"},
+           {"signal = \"nothing\"\nset = 1\n", "station 'u' has no signal 'nothing'"},
+       }) {
+    const PlantFileResult file = read_plant_file(head + stimulus + rows);
+    ASSERT_TRUE(file.errors.empty()) << rows;
+    std::vector<PlantError> errors;
+    const Plant plant(file.plant, {std::nullopt}, std::nullopt, errors);
+    ASSERT_EQ(errors.size(), 1U) << rows;
+    EXPECT_TRUE(errors[0].text.starts_with(message)) << errors[0].text;
+    EXPECT_EQ(errors[0].place.line, 4U);
+  }
+}
+
 // Every name of io.h and iob.h stands for the terminal of that name.
 TEST(TerminalNames, LeadToTheirTerminals) {
   for (const auto& [header, unit] : {std::pair("iob.h", "mdxb"), std::pair("io.h", "md60a")}) {

@@ -228,6 +228,18 @@ TEST_F(Runner, MistakesHaveTheirPlace) {
                        "bad.test.toml:4:8: error: bus 'b' is joined to port 'vcan0'"));
 }
 
+// In the signal's unit, as an expectation of it counts.
+TEST_F(Runner, AStepSetsAnySignalThatCanBeWritten) {
+  folder_.write("load.test.toml",
+                kStation + "[[step]]\nsignal = \"load_torque\"\nset = \"3 Nm\"\n[[expect]]\nsignal = \"load_torque\"\nequals = 3\n"
+                "[[step]]\nsignal = \"load_torque\"\nforce = -4\n[[expect]]\nsignal = \"load_torque\"\nequals = -4\nafter = \"10ms\"\n"
+                "[[step]]\nsignal = \"load_torque\"\npulse = 7\nfor = \"20ms\"\n[[expect]]\nsignal = \"load_torque\"\nequals = 7\nafter = \"10ms\"\n");
+  const CommandResult good = run({"load.test.toml"});
+  EXPECT_EQ(good.exit_code, 0) << good.out << good.err;
+  EXPECT_TRUE(contains(mistake(kStation + "[[step]]\nsignal = \"torque\"\nset = 3\n"), "bad.test.toml:5:1: error: torque of u can only be read"));
+  EXPECT_TRUE(contains(mistake(kStation + "[[step]]\nsignal = \"load_torque\"\nset = \"3 kg\"\n"), "bad.test.toml:5:1: error: '3 kg' is no number"));
+}
+
 TEST_F(Runner, ATimeThatIsOverEndsTheTest) {
   folder_.write(
       "late.test.toml",

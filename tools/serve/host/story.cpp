@@ -15,12 +15,12 @@ namespace {
 using runtime::kMicrosecond;
 using runtime::Stimulus;
 
-std::string act_text(const runtime::Plant& plant, const Stimulus& stimulus) {
+std::string act_text(const runtime::Plant& plant, Stimulus stimulus) {
   std::string text = stimulus.signal.station + "." + stimulus.signal.name;
   if (stimulus.action == Stimulus::Action::Release) return text + " is released";
-  const auto found = signals::find_signals(plant, text);
-  const bool known = found && found->size() == 1;
-  text += " = " + (known ? found->front().words(stimulus.value) : std::to_string(stimulus.value));
+  std::string why;
+  const auto signal = signals::find_target(plant, stimulus, why);
+  text += " = " + (signal ? signal->words(stimulus.value) : std::to_string(stimulus.value));
   if (stimulus.length != 0) text += fmt::format(" for {} ms", stimulus.length / runtime::kMillisecond);
   if (stimulus.action == Stimulus::Action::Force) text += ", forced";
   return text;
