@@ -2,7 +2,9 @@
 #include "stdlib/system_variables.hpp"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
+#include <utility>
 
 namespace ipos::stdlib {
 namespace {
@@ -28,10 +30,21 @@ const SystemVariable* find_system_variable(uint16_t number) {
   return at != std::end(kVariables) && at->number == number ? at : nullptr;
 }
 
+// Every plant asks for each name of its programs.
 const SystemVariable* find_system_variable(std::string_view name) {
-  for (const SystemVariable& variable : kVariables)
-    if (variable.compiler_name == name || variable.assembler_name == name) return &variable;
-  return nullptr;
+  using Named = std::pair<std::string_view, const SystemVariable*>;
+  static const std::array<Named, 2 * std::size(kVariables)> names = [] {
+    std::array<Named, 2 * std::size(kVariables)> all;
+    auto at = all.begin();
+    for (const SystemVariable& variable : kVariables) {
+      *at++ = {variable.compiler_name, &variable};
+      *at++ = {variable.assembler_name, &variable};
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+  }();
+  const auto at = std::lower_bound(names.begin(), names.end(), name, [](const Named& row, std::string_view wanted) { return row.first < wanted; });
+  return at != names.end() && at->first == name ? at->second : nullptr;
 }
 
 }  // namespace ipos::stdlib

@@ -254,7 +254,6 @@ void CanLine::deliver_clean(Time now, const Segment& segment, uint64_t resting) 
   const Transfer& transfer = segment.transfer;
   const auto number = static_cast<uint32_t>(&segment - segments_.data());
   const Frame& frame = transfer.winner().frame;
-  const std::span<const uint64_t> takers = filter_.takers(frame.id);
   const auto visit = [&](NodeId id) {
     if (!transfer.sent_by(id) && nodes_[id].segment == number && is_active(id)) deliver(now, segment, id);
     erring_.put(id, nodes_[id].counters.receive != 0);
@@ -263,8 +262,9 @@ void CanLine::deliver_clean(Time now, const Segment& segment, uint64_t resting) 
     const Node& node = nodes_[id];
     if (!transfer.sent_by(id) && node.segment == number && is_active(node)) node.node->on_frame(now, frame);
   };
-  for (size_t n = 0; n < takers.size(); ++n) {
-    const uint64_t wanted = takers[n] & ~(n == 0 ? resting : 0);
+  for (size_t n = 0; n < erring_.words().size(); ++n) {
+    const uint64_t takers = filter_.takers(frame.id)[n];  // looked up again: who takes a frame may open its filter
+    const uint64_t wanted = takers & ~(n == 0 ? resting : 0);
     if (erring_.words()[n] != 0)
       NodeSet::each_bit(wanted | erring_.words()[n], n, visit);
     else

@@ -1,6 +1,8 @@
 // A set of the nodes of one line, visited in order of attachment, and which of them want which identifiers.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -34,7 +36,8 @@ class NodeSet {
   std::vector<uint64_t> words_;
 };
 
-// Which nodes want which standard identifiers. All want everything until they are closed.
+// Which nodes want which standard identifiers. All want everything until they are closed. Most identifiers are wanted by the same
+// nodes: they share the first row, and the others have a row of their own.
 class AcceptanceFilter {
  public:
   static constexpr size_t kIdentifiers = 2048;
@@ -42,10 +45,10 @@ class AcceptanceFilter {
   void grow(size_t nodes) {
     const size_t width = (nodes + NodeSet::kWordBits - 1) / NodeSet::kWordBits;
     if (width != width_) {
-      std::vector<uint64_t> words(width * kIdentifiers, 0);
-      if (width_ != 0)
-        for (size_t id = 0; id < kIdentifiers; ++id)
-          for (size_t n = 0; n < width_; ++n) words[id * width + n] = words_[id * width_ + n];
+      const size_t rows = width_ == 0 ? 1 : words_.size() / width_;
+      std::vector<uint64_t> words(width * rows, 0);
+      for (size_t row = 0; row < rows; ++row)
+        for (size_t n = 0; n < width_; ++n) words[row * width + n] = words_[row * width_ + n];
       words_ = std::move(words);
       width_ = width;
     }
@@ -54,23 +57,26 @@ class AcceptanceFilter {
   void close(NodeId node) {
     each_word_of(node, [bit = bit_of(node)](uint64_t& word) { word &= ~bit; });
   }
-  void open(NodeId node, uint32_t id) { words_[id * width_ + node / NodeSet::kWordBits] |= bit_of(node); }
-  std::span<const uint64_t> takers(uint32_t id) const { return {words_.data() + id * width_, width_}; }
+  void open(NodeId node, uint32_t id) {
+    if (row_of_[id] == 0) {
+      row_of_[id] = static_cast<uint16_t>(words_.size() / width_);
+      words_.resize(words_.size() + width_);
+      std::copy_n(words_.begin(), width_, words_.end() - static_cast<std::ptrdiff_t>(width_));
+    }
+    words_[row_of_[id] * width_ + node / NodeSet::kWordBits] |= bit_of(node);
+  }
+  std::span<const uint64_t> takers(uint32_t id) const { return {words_.data() + row_of_[id] * width_, width_}; }
 
  private:
-  // For every identifier; with up to 64 nodes the words stand in a row.
+  // In every row.
   template <typename Change>
   void each_word_of(size_t node, Change change) {
-    uint64_t* const words = words_.data() + node / NodeSet::kWordBits;
-    const size_t width = width_;
-    if (width == 1)
-      for (size_t id = 0; id < kIdentifiers; ++id) change(words[id]);
-    else
-      for (size_t id = 0; id < kIdentifiers; ++id) change(words[id * width]);
+    for (size_t at = node / NodeSet::kWordBits; at < words_.size(); at += width_) change(words_[at]);
   }
   static uint64_t bit_of(size_t node) { return uint64_t{1} << (node % NodeSet::kWordBits); }
   size_t width_ = 0;
-  std::vector<uint64_t> words_;  // for each identifier the words of a set
+  std::array<uint16_t, kIdentifiers> row_of_{};  // of each identifier
+  std::vector<uint64_t> words_;                  // for each row the words of a set
 };
 
 }  // namespace ipos::runtime

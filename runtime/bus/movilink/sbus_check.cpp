@@ -26,10 +26,18 @@ std::optional<uint32_t> answer_of(const SbusIdentifier& request) {
 }  // namespace
 
 SbusCheck::SbusCheck(SbusCheckClient& client, bool units_outside)
-    : client_(client), units_outside_(units_outside) {
-  for (const TelegramType& type : kTelegrams)
-    for (uint8_t address = 0; address < kSbusAddresses; ++address)
-      identifiers_[sbus_identifier(type.telegram, address)].watched = true;
+    : client_(client), units_outside_(units_outside), identifiers_(unheard()) {}
+
+// Nobody has sent anything. Made once, as campaigns make many lines.
+const std::vector<SbusCheck::Identifier>& SbusCheck::unheard() {
+  static const std::vector<Identifier> identifiers = [] {
+    std::vector<Identifier> made(kStandardIdLimit, Identifier{kNoNode, false});
+    for (const TelegramType& type : kTelegrams)
+      for (uint8_t address = 0; address < kSbusAddresses; ++address)
+        made[sbus_identifier(type.telegram, address)].watched = true;
+    return made;
+  }();
+  return identifiers;
 }
 
 void SbusCheck::tell(Time now, std::string text) { client_.on_sbus_finding(now, std::move(text)); }

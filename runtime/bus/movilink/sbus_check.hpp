@@ -45,10 +45,11 @@ class SbusCheck final : public CanObserver {
   };
 
   struct Identifier {
-    NodeId sender = kNoNode;  // the first one
-    bool watched = false;     // its telegrams mean something to the checks
+    NodeId sender;  // the first one, or kNoNode; without a value of its own, so that all are copied in one piece
+    bool watched;   // its telegrams mean something to the checks
   };
 
+  static const std::vector<Identifier>& unheard();
   void check_telegram(const CanLine& line, const FrameRecord& record);
   void tell_second_sender(const CanLine& line, const FrameRecord& record, NodeId first);
   void check_address(const CanLine& line, const FrameRecord& record, const SbusIdentifier& identifier);
@@ -60,7 +61,7 @@ class SbusCheck final : public CanObserver {
   bool units_outside_;
   std::vector<Slave> slaves_;
   std::vector<uint32_t> sync_ids_;  // of the slaves, each once
-  std::vector<Identifier> identifiers_ = std::vector<Identifier>(kStandardIdLimit);
+  std::vector<Identifier> identifiers_;  // of all standard identifiers
   std::set<std::pair<uint32_t, NodeId>> told_;  // identifier and second sender
   std::set<std::pair<NodeId, NodeId>> told_masters_;
   std::vector<Exchange> open_;

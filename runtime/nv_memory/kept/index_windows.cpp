@@ -55,15 +55,21 @@ ParameterReply ValueWindow::write(uint16_t offset, int32_t value, bool nonvolati
 }
 
 ProgramWindow::ProgramWindow(NonvolatileMemory& memory, uint16_t first_index, uint16_t count)
-    : memory_(memory), first_index_(first_index), count_(count), words_(count) {}
+    : memory_(memory), first_index_(first_index), count_(count) {}
+
+// The operands of a command that ends the program may be words that are 0.
+void ProgramWindow::reach(size_t words) {
+  const size_t wanted = std::max(words, std::min<size_t>(count_, words + vm::kMaxWords - 1));
+  if (words_.size() < wanted) words_.resize(wanted);
+}
 
 bool ProgramWindow::restart(std::span<const uint32_t> program) {
   origin_ = checksum(program);
   const bool foreign = kept_ && kept_->origin != origin_;
   if (foreign) kept_.reset();
   if (kept_) program = kept_->words;
-  words_.assign(std::max<size_t>(count_, program.size()), 0);
-  std::copy(program.begin(), program.end(), words_.begin());
+  words_.assign(program.begin(), program.end());
+  reach(program.size());
   return !foreign;
 }
 
@@ -99,6 +105,7 @@ bool ProgramWindow::running() const {
 
 ParameterReply ProgramWindow::write(uint16_t offset, int32_t value, bool nonvolatile) {
   if (running()) return tl::unexpected(codes::kProtected);
+  reach(size_t{offset} + 1);
   words_[offset] = static_cast<uint32_t>(value);
   if (!nonvolatile) return value;
   std::optional<NvProgram> before = kept_;

@@ -70,17 +70,18 @@ class ProgramWindow final : public IndexWindow {
   // Keeps the program memory as it is now.
   void keep();
 
-  ParameterReply read(uint16_t offset) override { return static_cast<int32_t>(words_[offset]); }
+  ParameterReply read(uint16_t offset) override { return offset < words_.size() ? static_cast<int32_t>(words_[offset]) : 0; }
   ParameterReply write(uint16_t offset, int32_t value, bool nonvolatile) override;
   bool stored(uint16_t /*offset*/) const override { return true; }
 
  private:
   bool running() const;
+  void reach(size_t words);
 
   NonvolatileMemory& memory_;
   uint16_t first_index_;
   uint16_t count_;               // words that have an index
-  std::vector<uint32_t> words_;  // at least count_
+  std::vector<uint32_t> words_;  // the first ones; all others are 0
   uint32_t origin_ = 0;          // CRC-32 of the plant's program
   std::optional<NvProgram> kept_;
   const vm::Machine* machine_ = nullptr;

@@ -107,6 +107,20 @@ TEST_F(Program, HasAWordForEveryIndexAndForAllOfTheProgram) {
   EXPECT_EQ(window_.code(), longer);
 }
 
+// A command behind all others has its operands, of words that are 0, and so has one that was written.
+TEST_F(Program, TheLastCommandHasItsOperands) {
+  for (const vm::OpcodeInfo& row : vm::opcode_table()) {
+    const std::vector<uint32_t> whole = code_of({I(row.opcode)});
+    ASSERT_LE(whole.size(), 4U);
+    if (whole.front() == 0 || vm::decode(whole, 0).status != vm::DecodeStatus::Ok) continue;
+    window_.restart(std::vector<uint32_t>{whole.front()});
+    EXPECT_EQ(window_.code(), whole) << row.mnemonic();
+    window_.restart({});
+    window_.write(0, static_cast<int32_t>(whole.front()), false);
+    EXPECT_EQ(window_.code(), whole) << row.mnemonic();
+  }
+}
+
 // JMP 0 ends in a word that is 0, RET is one word, and what is no command counts as one word.
 TEST_F(Program, EndsWithItsLastCommand) {
   window_.restart({});
