@@ -22,23 +22,26 @@ bool includes_b_headers(const SourceMap& sources) {
 }  // namespace
 
 Compilation compile(const std::string& name, const std::string& path, std::string text,
-                    const CompileOptions& options) {
+                    const CompileOptions& options, FrontEnd* front) {
+  FrontEnd unwanted;
+  if (front == nullptr) front = &unwanted;
   Compilation out;
   out.diagnostics = Diagnostics(options.warnings);
-  PreprocessOptions preprocess;
-  preprocess.include_dirs = options.include_dirs;
-  preprocess.defines = options.defines;
-  preprocess.headers = stdlib::headers::embedded_files();
-  preprocess.read_file = options.read_file;
-  preprocess.list_files = options.list_files;
+  PreprocessOptions preprocessing;
+  preprocessing.include_dirs = options.include_dirs;
+  preprocessing.defines = options.defines;
+  preprocessing.headers = stdlib::headers::embedded_files();
+  preprocessing.read_file = options.read_file;
+  preprocessing.list_files = options.list_files;
 
   const SourceFile& main = out.sources->add(name, path, std::move(text));
-  const ast::Program tree = parse_program(*out.sources, main, preprocess, out.diagnostics);
+  front->text = preprocess(*out.sources, main, preprocessing, out.diagnostics);
+  if (front->text.complete) front->tree = parse_tokens(*out.sources, front->text, out.diagnostics);
   out.unit = options.unit;
   if (out.unit == nullptr)
     out.unit = includes_b_headers(*out.sources) ? &stdlib::unit_with(stdlib::Trait::NewVariables) : &stdlib::usual_unit();
   if (out.diagnostics.has_errors()) return out;
-  out.program = check(tree, *out.unit, *out.sources, out.diagnostics, options.is_unit_value);
+  out.program = check(front->tree, *out.unit, *out.sources, out.diagnostics, options.is_unit_value);
   if (!out.program) return out;
   auto generated = generate(*out.program, *out.unit, *out.sources, options.atomic, out.diagnostics);
   if (!generated) return out;

@@ -8,7 +8,9 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/ast/ast.hpp"
 #include "compiler/diag/diag.hpp"
+#include "compiler/preprocess/preprocess.hpp"
 #include "compiler/sema/checked.hpp"
 #include "stdlib/unit_types.hpp"
 #include "vm/image/image.hpp"
@@ -30,7 +32,7 @@ struct CompileOptions {
 };
 
 struct Compilation {
-  std::unique_ptr<SourceMap> sources = std::make_unique<SourceMap>();
+  std::shared_ptr<SourceMap> sources = std::make_shared<SourceMap>();
   Diagnostics diagnostics;
   const stdlib::UnitType* unit = nullptr;  // the one compiled for
   std::optional<vm::Image> image;          // set when there are no errors
@@ -39,8 +41,14 @@ struct Compilation {
   std::optional<checked::Program> program;  // what it was generated from, its map apart; set when it is checked without errors
 };
 
+// What the front end made of the text, for who wants more of it than the image (symbols/index.hpp). It refers to the sources.
+struct FrontEnd {
+  PreprocessedText text;
+  ast::Program tree;  // empty where the text is not complete
+};
+
 // `name` is how messages call the file, `path` where it was read from ("" for standard input).
 Compilation compile(const std::string& name, const std::string& path, std::string text,
-                    const CompileOptions& options = {});
+                    const CompileOptions& options = {}, FrontEnd* front = nullptr);
 
 }  // namespace ipos::compiler

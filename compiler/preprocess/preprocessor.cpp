@@ -70,8 +70,7 @@ void Preprocessor::open(const SourceFile& file, std::span<const Token> scanned) 
   if (scanned.empty()) files_.back().scanner.emplace(file, diagnostics_);
 }
 
-Token Preprocessor::OpenFile::next() {
-  if (scanner) return scanner->next();
+Token Preprocessor::OpenFile::next_scanned() {
   Token token = scanned.front();
   if (scanned.size() > 1) scanned = scanned.subspan(1);  // as a scanner, which gives End again and again
   token.span.begin.value += file->base;

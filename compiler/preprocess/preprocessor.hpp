@@ -38,8 +38,9 @@ class Preprocessor {
     std::span<const Token> scanned;
     std::vector<Condition> conditions;
 
-    Token next();
-    Token header_name() { return scanner ? scanner->header_name() : next(); }
+    Token next() { return scanner ? scanner->next() : next_scanned(); }
+    Token next_scanned();
+    Token header_name() { return scanner ? scanner->header_name() : next_scanned(); }
   };
   using Line = std::vector<Token>;
 

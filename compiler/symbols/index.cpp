@@ -6,7 +6,6 @@
 #include "compiler/parse/parse.hpp"
 #include "compiler/sema/declarations.hpp"
 #include "compiler/symbols/indexer.hpp"
-#include "stdlib/headers.hpp"
 
 namespace ipos::compiler {
 
@@ -35,25 +34,25 @@ const SourceFile* ProgramIndex::file(std::string_view path_or_name) const {
   return nullptr;
 }
 
-ProgramIndex index_program(const std::string& name, const std::string& path, std::string text,
-                           const CompileOptions& options, const stdlib::UnitType& unit) {
-  ProgramIndex index;
-  PreprocessOptions preprocessing{options.include_dirs, options.defines, stdlib::headers::embedded_files(),
-                                  options.read_file, options.list_files};
+IndexedCompilation compile_indexed(const std::string& name, const std::string& path, std::string text,
+                                   const CompileOptions& options) {
+  FrontEnd front;
+  IndexedCompilation made{compile(name, path, std::move(text), options, &front), {}};
+  ProgramIndex& index = made.index;
+  index.sources = made.compiled.sources;
+  index.main = index.sources->files().front().get();
   // The mistakes are told by compile(); here they only leave gaps.
   Diagnostics unheard;
-  index.main = &index.sources->add(name, path, std::move(text));
-  const PreprocessedText tokens = preprocess(*index.sources, *index.main, preprocessing, unheard);
-  const ast::Program tree = parse_tokens(*index.sources, tokens, unheard);
-  Context context{unit, *index.sources, unheard, {}, {}, {}, {}, {}, {}};
-  declare(tree, context);
+  if (!front.text.complete) front.tree = parse_tokens(*index.sources, front.text, unheard);
+  Context context{*made.compiled.unit, *index.sources, unheard, {}, {}, {}, {}, {}, {}};
+  declare(front.tree, context);
   Indexer indexer(index, context.scope);
-  indexer.add_macros(tokens.record);
-  indexer.add_declarations(tree);
-  indexer.add_tokens(tokens.tokens);
-  indexer.add_bodies(tokens.record);
-  indexer.finish(tokens.record);
-  return index;
+  indexer.add_macros(front.text.record);
+  indexer.add_declarations(front.tree);
+  indexer.add_tokens(front.text.tokens);
+  indexer.add_bodies(front.text.record);
+  indexer.finish(front.text.record);
+  return made;
 }
 
 }  // namespace ipos::compiler

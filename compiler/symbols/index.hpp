@@ -57,7 +57,7 @@ struct Occurrence {
 };
 
 struct ProgramIndex {
-  std::unique_ptr<SourceMap> sources = std::make_unique<SourceMap>();
+  std::shared_ptr<const SourceMap> sources;
   const SourceFile* main = nullptr;
   std::vector<IndexedSymbol> symbols;
   std::vector<Occurrence> occurrences;  // by file in order of the map, then offset; no two at one place
@@ -77,7 +77,12 @@ struct ProgramIndex {
 // Path of a file, or the name of a built-in header.
 const std::string& identity(const SourceFile& file);
 
-ProgramIndex index_program(const std::string& name, const std::string& path, std::string text,
-                           const CompileOptions& options, const stdlib::UnitType& unit);
+// A program compiled, and its index made of what the compiler read: every keystroke in an editor asks for both.
+struct IndexedCompilation {
+  Compilation compiled;
+  ProgramIndex index;
+};
+IndexedCompilation compile_indexed(const std::string& name, const std::string& path, std::string text,
+                                   const CompileOptions& options);
 
 }  // namespace ipos::compiler

@@ -31,6 +31,12 @@ const std::string kSource =
     "}\n"
     "helper() { }\n";
 
+compiler::ProgramIndex index_of(const std::string& source) {
+  compiler::CompileOptions options;
+  options.unit = stdlib::find_unit(std::string_view("md60a"));
+  return compiler::compile_indexed("B.IPC", "/p/B.IPC", source, options).index;
+}
+
 class Index : public testing::Test {
  protected:
   Index() {
@@ -38,8 +44,8 @@ class Index : public testing::Test {
     options.read_file = [](const std::string& path) {
       return path.ends_with("own.h") ? std::optional(kHeader) : std::nullopt;
     };
-    index_ = compiler::index_program("A.IPC", "/p/A.IPC", kSource, options,
-                                     *stdlib::find_unit(std::string_view("md60a")));
+    options.unit = stdlib::find_unit(std::string_view("md60a"));
+    index_ = compiler::compile_indexed("A.IPC", "/p/A.IPC", kSource, options).index;
   }
 
   // '@' stands in front of the name that is asked for.
@@ -138,8 +144,7 @@ std::string member_meant(const std::string& text) {
       text;
   const size_t mark = source.find('@');
   source.erase(mark, 1);
-  const compiler::ProgramIndex index =
-      compiler::index_program("B.IPC", "/p/B.IPC", source, {}, *stdlib::find_unit(std::string_view("md60a")));
+  const compiler::ProgramIndex index = index_of(source);
   const Occurrence* found = index.at(*index.main, static_cast<uint32_t>(mark));
   if (found == nullptr) return "nothing";
   return index.symbols[found->symbol].name + (found->number ? " " + std::to_string(*found->number) : "");
@@ -200,8 +205,7 @@ TEST(IndexOfAnyText, TheExtentOfADeclarationHasItsNameInIt) {
       "#define NAME first\n#define DECLARATION long second\n#define WHOLE long third;\n"
       "long NAME;\nDECLARATION;\nWHOLE\nlong fourth, fifth[2];\n"
       "seventh() { fourth = 1; }\n";
-  const compiler::ProgramIndex index =
-      compiler::index_program("B.IPC", "/p/B.IPC", source, {}, *stdlib::find_unit(std::string_view("md60a")));
+  const compiler::ProgramIndex index = index_of(source);
   const auto extent = [&](const char* name) {
     const IndexedSymbol* found = index.find(name, "");
     if (found == nullptr || !found->definition) return std::string("none");

@@ -153,8 +153,9 @@ Program Workspace::compile(const std::string& path, const std::map<std::string, 
     return other != texts.end() ? std::optional(other->second) : text(clean);
   };
   const std::string source = options.read_file(path).value_or("");
-  program.compiled = compiler::compile(path, path, source, options);
-  program.index = compiler::index_program(path, path, source, options, *program.compiled.unit);
+  auto [compiled, index] = compiler::compile_indexed(path, path, source, options);
+  program.compiled = std::move(compiled);
+  program.index = std::move(index);
   for (const auto& file : program.index.sources->files())
     if (!file->path.empty()) program.files.insert(tidy(file->path));
   return program;
