@@ -75,6 +75,7 @@ class CanTap final : private runtime::CanObserver, private runtime::CanNode {
   void on_line_event(const runtime::CanLine&, const runtime::LineEvent& event) override;
   void on_frame(Time, const runtime::Frame&) override {}
   void on_sent(Time, const runtime::Frame&, uint64_t) override { leave_queue(); }
+  bool minds_repeats() const override { return false; }
   void on_not_sent(Time, const runtime::Frame&, uint64_t, runtime::NotSent why) override {
     if (why == runtime::NotSent::Dropped) leave_queue();  // for every other reason it is tried again
   }

@@ -54,6 +54,9 @@ Plant::Plant(PlantFile file, std::vector<std::optional<vm::Image>> programs, std
   // Sources order the events of one moment: first the lines, then machines, the surroundings, then stations and
   // controls, each in the order of the file.
   for (const BusConfig& bus : file_.buses) add_bus(bus);
+  if (execution.pace == Pace::InTurn)
+    for (const auto& bus : buses_)
+      if (auto* can = as<CanBus>(bus.get())) can->line().repeat_in_turn();
   machines_ = std::make_unique<Machines>(queue_, next_source_, file_, journal_);
   surroundings_ = std::make_unique<Surroundings>(queue_, next_source_++, journal_);
   for (size_t n = 0; n < file_.stations.size(); ++n)

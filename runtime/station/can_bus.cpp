@@ -31,6 +31,7 @@ class CanBus::Hand final : public CanNode {
  private:
   void on_frame(Time, const Frame&) override {}
   void on_sent(Time, const Frame&, uint64_t) override {}
+  bool minds_repeats() const override { return false; }
   void on_not_sent(Time, const Frame&, uint64_t, NotSent) override {}
   void on_bus_off(Time) override { line_.recover(node_); }
 

@@ -44,6 +44,7 @@ class CanopenPort final : public StationPort,
   void on_frame(Time now, const Frame& frame) override;
   void receive(Time now, const Frame& frame);
   void on_sent(Time now, const Frame& frame, uint64_t tag) override;
+  bool minds_repeats() const override { return false; }
   void on_not_sent(Time now, const Frame& frame, uint64_t tag, NotSent reason) override;
   void on_bus_off(Time) override { sender_.recover(); }
 

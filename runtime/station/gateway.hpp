@@ -78,6 +78,7 @@ class Gateway final : public Control,
 
   void on_frame(Time now, const Frame& frame) override;
   void on_sent(Time now, const Frame& frame, uint64_t tag) override;
+  bool minds_repeats() const override { return false; }
   void on_not_sent(Time, const Frame&, uint64_t, NotSent) override {}
   void on_bus_off(Time) override { port_->recover(); }
   void on_event(Time now, uint32_t kind, uint64_t argument) override;

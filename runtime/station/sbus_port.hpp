@@ -85,6 +85,7 @@ class SbusPort final : public StationPort, private CanNode, private SlaveObserve
   void tell_reasons(Time now);
   void tell_shared(Time now, const Frame& frame);
   void on_sent(Time now, const Frame& frame, uint64_t tag) override;
+  bool minds_repeats() const override { return false; }  // acyclic telegrams are not sent again
   void on_not_sent(Time now, const Frame& frame, uint64_t tag, NotSent reason) override;
   void on_bus_off(Time now) override;
   void on_ignored(Time now, const Frame& frame, Ignored reason, ReturnCode code) override;

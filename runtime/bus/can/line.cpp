@@ -8,12 +8,6 @@
 #include "runtime/bus/can/line_event_kinds.hpp"
 
 namespace ipos::runtime {
-namespace {
-
-constexpr uint32_t kSuspendBits = 8;     // pause of an error-passive sender after a transmission
-constexpr uint32_t kRecessiveTail = 11;  // every transfer ends with delimiter bits and intermission
-
-}  // namespace
 
 bool is_baud_rate(uint32_t baud) {
   return std::find(kBaudRates.begin(), kBaudRates.end(), baud) != kBaudRates.end();
@@ -30,6 +24,7 @@ CanLine::CanLine(EventQueue& queue, uint32_t source, std::string name, uint32_t 
 }
 
 NodeId CanLine::attach(std::string name, uint32_t baud, CanNode& node) {
+  wake();
   const NodeId id = static_cast<NodeId>(nodes_.size());
   Node added{};
   added.name = std::move(name);
@@ -58,6 +53,7 @@ SendStatus CanLine::send(NodeId node, const Frame& frame, uint64_t tag, bool ove
   Node& n = nodes_[node];
   if (!is_valid(frame)) return SendStatus::InvalidFrame;
   if (!is_active(n)) return SendStatus::NotActive;
+  wake();
   const uint64_t ready = static_cast<uint64_t>(queue_.now() / bit_time_) + 1;
   const uint32_t key = arbitration_key(frame);
   const uint64_t wanted = std::max(ready, n.suspended_until);
@@ -92,6 +88,7 @@ void CanLine::withdraw(NodeId node, uint64_t tag) {
   const Segment& segment = segments_[nodes_[node].segment];
   const bool settled = segment.start_bit != kNoBit;
   if (queue.empty() && settled) return;
+  wake();
   for (Pending& pending : queue)
     if (pending.tag == tag && pending.on_wire) pending.withdrawn = true;
   const bool changed =
@@ -155,7 +152,9 @@ void CanLine::schedule_start(uint32_t number) {
 
 void CanLine::on_event(Time now, uint32_t kind, uint64_t argument) {
   switch (kind) {
-    case line_event::kStart: return begin_and_end(static_cast<uint32_t>(argument), true);
+    case line_event::kStart:
+      if (repeats_.any()) return catch_up();  // as many as were foreseen
+      return begin_and_end(static_cast<uint32_t>(argument), true);
     case line_event::kEnd: return begin_and_end(static_cast<uint32_t>(argument), false);
     case line_event::kFaultBegins: return switch_fault(now, static_cast<size_t>(argument), true);
     case line_event::kFaultEnds: return switch_fault(now, static_cast<size_t>(argument), false);
@@ -226,8 +225,7 @@ bool CanLine::find_sound() {
 
 inline void CanLine::release(Segment& segment, uint64_t begin, uint32_t bits) {
   segment.start_bit = kNoBit;
-  segment.free_bit = begin + bits;
-  segment.recessive_from = segment.free_bit - kRecessiveTail;
+  segment.end_at(begin + bits);
   meter_.add(begin, bits);
 }
 
@@ -330,7 +328,7 @@ void CanLine::begin_and_end(uint32_t number, bool begins) {
     }
     if (segments_.size() != 1 || segments_[0].start_bit != kNoBit) return schedule_start();
     bit = next_start(0);
-    if (bit == kNoBit) return;
+    if (bit == kNoBit || begin_repeats(bit)) return;
     number = 0;
   }
 }

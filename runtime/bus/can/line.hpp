@@ -20,6 +20,7 @@
 #include "runtime/bus/can/line_fault.hpp"
 #include "runtime/bus/can/node.hpp"
 #include "runtime/bus/can/node_set.hpp"
+#include "runtime/bus/can/repeats.hpp"
 #include "runtime/bus/can/transfer.hpp"
 #include "runtime/bus/line/line_load.hpp"
 #include "runtime/clock/event_queue.hpp"
@@ -80,6 +81,9 @@ class CanLine final : private EventTarget {
   // Ends those of this kind, node and identifier that have begun and would last for ever; false: there are none.
   bool repair(const LineFault& like);
 
+  // The plain run: each repetition of a frame that nobody acknowledges is sent in its turn (line_repeats.cpp).
+  void repeat_in_turn() { in_turn_ = true; }
+
   const std::string& name() const { return name_; }
   uint32_t baud() const { return baud_; }
   Time bit_time() const { return bit_time_; }
@@ -125,6 +129,8 @@ class CanLine final : private EventTarget {
     EventId recovery = kNoEvent;
     std::string name;
   };
+  static constexpr uint32_t kSuspendBits = 8;     // pause of an error-passive sender after a transmission
+  static constexpr uint32_t kRecessiveTail = 11;  // every transfer ends with delimiter bits and intermission
   static constexpr uint64_t kBusy = 0, kNoBit = ~uint64_t{0};
   struct Segment {
     uint64_t start_bit = kNoBit;  // when the next transfer begins; kBusy: one is under way
@@ -134,6 +140,10 @@ class CanLine final : private EventTarget {
     Transfer transfer;
 
     bool busy() const { return start_bit == kBusy; }
+    void end_at(uint64_t bit) {  // of the intermission
+      free_bit = bit;
+      recessive_from = bit - kRecessiveTail;
+    }
   };
   struct LateFrame {
     Frame frame;
@@ -176,6 +186,14 @@ class CanLine final : private EventTarget {
   void queue_behind(NodeId node, const Pending& pending);
   void drop_queue(NodeId node);
 
+  // line_repeats.cpp: many repetitions of a frame that nobody acknowledges at once
+  bool begin_repeats(uint64_t bit);
+  uint64_t passed_bit() const;
+  void wake() {  // before anything of the line changes
+    if (repeats_.any()) catch_up();
+  }
+  void catch_up();
+
   // line_wiring.cpp: who takes part
   void wire(Node& node) {
     node.wired = node.connected && !node.swapped && node.baud == baud_;
@@ -216,6 +234,9 @@ class CanLine final : private EventTarget {
   uint32_t shorts_ = 0;
   uint32_t stuck_ = 0;
   std::vector<std::optional<LateFrame>> late_;
+
+  Repeats repeats_;
+  bool in_turn_ = false;
 
   uint64_t frames_ = 0;
   LoadMeter meter_;

@@ -17,6 +17,12 @@ size_t LineFaults::add(const LineFault& fault) {
   return faults_.size() - 1;
 }
 
+bool LineFaults::may_strike(Time now) const {
+  return std::any_of(faults_.begin(), faults_.end(), [now](const Planted& planted) {
+    return fault_type(planted.fault.kind).scope == FaultScope::Frame && now < planted.fault.until;
+  });
+}
+
 FrameFault LineFaults::strike(Time now, uint32_t id) {
   FrameFault struck;
   for (Planted& planted : faults_) {

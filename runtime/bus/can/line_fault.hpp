@@ -71,6 +71,8 @@ class LineFaults {
   // Of several that strike the same frame the first one planted counts. Repetitions are frames of their own.
   FrameFault strike(Time now, uint32_t id);
   bool empty() const { return faults_.empty(); }
+  // One of frames strikes now or later.
+  bool may_strike(Time now) const;
 
  private:
   struct Planted {

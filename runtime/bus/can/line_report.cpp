@@ -58,7 +58,9 @@ void CanLine::report_absence(NodeId node, LineObserver* only) {
 // --- load
 
 LineLoad CanLine::load(Time now) const {
-  LineLoad load = meter_.load(static_cast<uint64_t>(now / bit_time_));
+  LoadMeter meter = meter_;
+  repeats_.count(meter, repeats_.ended(passed_bit()));
+  LineLoad load = meter.load(static_cast<uint64_t>(now / bit_time_));
   load.frames = frames_;
   return load;
 }

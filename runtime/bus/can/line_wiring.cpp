@@ -14,6 +14,7 @@ constexpr uint32_t kRecoveryBits = 11;
 }  // namespace
 
 void CanLine::set_baud(NodeId node, uint32_t baud) {
+  wake();
   nodes_[node].baud = baud;
   wire(nodes_[node]);
   if (!is_active(node)) drop_queue(node);
@@ -21,6 +22,7 @@ void CanLine::set_baud(NodeId node, uint32_t baud) {
 }
 
 void CanLine::set_connected(NodeId node, bool connected) {
+  wake();
   nodes_[node].connected = connected;
   wire(nodes_[node]);
   if (!connected) drop_queue(node);
@@ -42,6 +44,7 @@ bool CanLine::set_line_baud(uint32_t baud) {
 // --- planted faults
 
 void CanLine::plant(const LineFault& fault) {
+  wake();
   const size_t number = faults_.add(fault);
   sound_ = false;
   if (fault_type(fault.kind).scope == FaultScope::Frame) return;  // strikes by itself
@@ -50,6 +53,7 @@ void CanLine::plant(const LineFault& fault) {
 }
 
 bool CanLine::repair(const LineFault& like) {
+  wake();
   bool found = false;
   const Time now = queue_.now();
   for (size_t n = 0; n < faults_.size(); ++n) {
@@ -66,6 +70,7 @@ bool CanLine::repair(const LineFault& like) {
 }
 
 void CanLine::switch_fault(Time now, size_t number, bool on) {
+  wake();
   const LineFault fault = faults_[number];
   report({on ? LineEventKind::FaultStrikes : LineEventKind::FaultEnds, now,
           fault.behind ? kNoNode : fault.node, fault.behind ? fault.node : kNoNode, 0,
@@ -147,6 +152,7 @@ void CanLine::deliver_late(Time now, size_t number) {
 // --- bus-off
 
 void CanLine::restart(NodeId node) {
+  wake();
   queue_.cancel(std::exchange(nodes_[node].recovery, kNoEvent));
   nodes_[node].recovery_runs = 0;
   nodes_[node].counters = {};
@@ -154,6 +160,7 @@ void CanLine::restart(NodeId node) {
 
 // The counters stand in the middle of what the state allows, so that one frame does not change it.
 void CanLine::tell_error_state(NodeId id, ErrorState state) {
+  wake();
   constexpr uint32_t kTransmit[] = {0, 192, 256};
   Node& node = nodes_[id];
   const bool was_off = node.counters.state() == ErrorState::BusOff, is_off = state == ErrorState::BusOff;
@@ -166,6 +173,7 @@ void CanLine::tell_error_state(NodeId id, ErrorState state) {
 
 void CanLine::recover(NodeId node) {
   if (nodes_[node].counters.state() != ErrorState::BusOff) return;
+  wake();
   nodes_[node].recovery_runs = kRecoveryRuns;
   recovering_ = true;
   sound_ = false;
@@ -204,6 +212,9 @@ void CanLine::finish_recovery(Time now, NodeId node) {
   report({LineEventKind::Recovered, now, node});
 }
 
-void CanLine::replace(NodeId node, CanNode& by) { nodes_[node].node = &by; }
+void CanLine::replace(NodeId node, CanNode& by) {
+  wake();
+  nodes_[node].node = &by;
+}
 
 }  // namespace ipos::runtime

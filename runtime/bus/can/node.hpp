@@ -26,6 +26,9 @@ class CanNode {
   virtual void on_frame(Time now, const Frame& frame) = 0;
   virtual void on_sent(Time now, const Frame& frame, uint64_t tag) = 0;
   virtual void on_not_sent(Time now, const Frame& frame, uint64_t tag, NotSent reason) = 0;
+  // False: while a frame stays queued and is sent again, it does nothing when it hears once more that nobody has
+  // acknowledged it.
+  virtual bool minds_repeats() const { return true; }
   // Too many errors: it takes no part any more until it has recovered; its sender can ask for that.
   virtual void on_bus_off(Time /*now*/) {}
 

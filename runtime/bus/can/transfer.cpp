@@ -16,6 +16,12 @@ void end_with_error(Transfer& transfer, Transfer::Outcome outcome, uint32_t flag
   transfer.bits = transfer.end + kIntermissionBits;
 }
 
+// The sender finds no acknowledge in its slot, and begins its flag with the bit after it.
+void end_unacknowledged(Transfer& transfer, uint32_t frame_end) {
+  constexpr uint32_t kFromSlotToEnd = 9;  // with the slot: delimiter and end of frame are 8 bits
+  end_with_error(transfer, Transfer::Outcome::NoAcknowledge, frame_end - kFromSlotToEnd + 1 + kErrorFlagBits);
+}
+
 // First position where the two differ: different frames of one arbitration field do so before their CRC ends.
 uint32_t first_difference(const WireBits& a, const WireBits& b) {
   uint32_t position = 0;
@@ -86,8 +92,7 @@ void disturb(Transfer& transfer, Listeners listeners, const WireBits& bits) {
                           flags_end(seen, receiver_notices(wrong, false) + 1, FirstFlag::Listener));
   }
   // An error-passive listener cannot make itself heard: it alone has no frame, and gives no acknowledge.
-  if (!listeners.others)
-    end_with_error(transfer, Transfer::Outcome::NoAcknowledge, bits.count - 9 + 1 + kErrorFlagBits);
+  if (!listeners.others) end_unacknowledged(transfer, bits.count);
 }
 
 // The sender sees its last bit dominant. The others have the frame already, for them it is an overload flag.
@@ -103,10 +108,11 @@ void resolve(Transfer& transfer, Listeners listeners, KnownFrames& known, bool s
   assert(!transfer.senders.empty());
   if (short_circuit)  // the start of frame already fails, and the flag is not seen
     return end_with_error(transfer, Transfer::Outcome::NoLevel, 1 + kErrorFlagBits);
-  if (transfer.senders.size() == 1 && listeners.any && !transfer.fault.kind) {
-    transfer.outcome = Transfer::Outcome::Delivered;
+  if (transfer.senders.size() == 1 && !transfer.fault.kind) {
     transfer.bits = known.bits(transfer.senders.front().frame);
     transfer.end = transfer.bits - kIntermissionBits;
+    transfer.outcome = Transfer::Outcome::Delivered;
+    if (!listeners.any) end_unacknowledged(transfer, transfer.end);
     return;
   }
   // The bus carries the frame that is dominant at each first difference.
@@ -132,8 +138,7 @@ void resolve(Transfer& transfer, Listeners listeners, KnownFrames& known, bool s
     end_with_error(transfer, Transfer::Outcome::Collision,
                    collision_flag_end(transfer, bits, error, listeners.error_active));
   } else if (!listeners.any) {
-    const uint32_t acknowledge_slot = bits.count - 9;
-    end_with_error(transfer, Transfer::Outcome::NoAcknowledge, acknowledge_slot + 1 + kErrorFlagBits);
+    end_unacknowledged(transfer, bits.count);
   } else {
     transfer.outcome = Transfer::Outcome::Delivered;
     transfer.end = bits.count;

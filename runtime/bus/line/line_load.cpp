@@ -26,6 +26,22 @@ void LoadMeter::add_beyond(uint64_t begin, uint64_t count) {
   }
 }
 
+// One step for those that end within the second being counted, one for that which does not.
+void LoadMeter::add_repeated(uint64_t begin, uint64_t count, uint64_t period, uint64_t times) {
+  while (times > 0) {
+    const bool fits = begin + count <= window_end_;
+    const uint64_t within = fits ? std::min(times, (window_end_ - begin - count) / period + 1) : 1;
+    if (fits) {
+      busy_ += within * count;
+      window_busy_ += within * count;
+    } else {
+      add_beyond(begin, count);
+    }
+    begin += within * period;
+    times -= within;
+  }
+}
+
 void LoadMeter::begin_window(uint64_t window) {
   assert(window > window_);
   const uint64_t gap = window - window_;

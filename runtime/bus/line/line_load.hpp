@@ -26,6 +26,9 @@ class LoadMeter {
     window_busy_ += count;
   }
 
+  // As add() `times` times, each `period` units after the one before.
+  void add_repeated(uint64_t begin, uint64_t count, uint64_t period, uint64_t times);
+
   // With `elapsed` units since time 0, at most a second before what was added last; `frames` is left to the caller.
   LineLoad load(uint64_t elapsed) const;
 

@@ -28,6 +28,7 @@ class Replay final : public CanNode, private EventTarget {
 
   void on_frame(Time, const Frame&) override {}
   void on_sent(Time, const Frame&, uint64_t) override { ++sent_; }
+  bool minds_repeats() const override { return false; }
   void on_not_sent(Time, const Frame&, uint64_t, NotSent reason) override;
   void on_bus_off(Time) override { sender_->recover(); }
 

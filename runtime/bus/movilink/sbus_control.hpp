@@ -59,6 +59,7 @@ class SbusControl final : public CanNode, private EventTarget {
 
   void on_frame(Time now, const Frame& frame) override;
   void on_sent(Time, const Frame&, uint64_t) override {}
+  bool minds_repeats() const override { return false; }
   void on_not_sent(Time, const Frame&, uint64_t, NotSent) override {}
   void on_bus_off(Time) override { sender_->recover(); }
 

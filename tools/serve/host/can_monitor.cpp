@@ -132,6 +132,7 @@ class CanMonitor final : public LineMonitor, private runtime::CanObserver, priva
   // The page's node only sends.
   void on_frame(Time, const Frame&) override {}
   void on_sent(Time, const Frame&, uint64_t) override {}
+  bool minds_repeats() const override { return false; }
   void on_not_sent(Time, const Frame&, uint64_t, runtime::NotSent) override {}
 
   runtime::CanLine& line_;
