@@ -96,11 +96,10 @@ bool ProfibusBus::repair(const FaultConfig& config) {
 }
 
 void ProfibusBus::on_frame(const profibus::Line&, NodeId sender, const profibus::Reception& reception) {
-  std::vector<uint64_t> facts = {sender, static_cast<uint64_t>(reception.start),
-                                 static_cast<uint64_t>(reception.end),
-                                 reception.frame ? 0 : 1 + static_cast<uint64_t>(reception.frame.error())};
-  facts.insert(facts.end(), reception.octets.begin(), reception.octets.end());
-  trace(facts);
+  facts_ = {sender, static_cast<uint64_t>(reception.start), static_cast<uint64_t>(reception.end),
+            reception.frame ? 0 : 1 + static_cast<uint64_t>(reception.frame.error())};
+  facts_.insert(facts_.end(), reception.octets.begin(), reception.octets.end());
+  trace(facts_);
   if (!is_observed()) return;
   tell({reception.end, profibus::hex_text(reception.octets),
         reception.frame ? profibus::describe(*reception.frame)

@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 #include <tuple>
+#include <vector>
 
 #include "runtime/bus/profibus/line.hpp"
 #include "runtime/station/bus.hpp"
@@ -55,6 +56,7 @@ class ProfibusBus final : public Bus, private profibus::LineObserver {
   std::unique_ptr<Hand> hand_;
   std::unique_ptr<FmsOperator> fms_operator_;
   std::unique_ptr<LastDpTraffic> last_frames_;
+  std::vector<uint64_t> facts_;  // of the last frame, for tracers
   // Each is told once.
   std::set<std::tuple<profibus::LineEventKind, NodeId, std::optional<profibus::LineFaultKind>>> told_;
 };

@@ -12,13 +12,12 @@
 #include <optional>
 #include <span>
 #include <string_view>
-#include <vector>
 
 #include <tl/expected.hpp>
 
-namespace ipos::profibus {
+#include "runtime/bus/profibus/octets.hpp"
 
-using Octets = std::vector<uint8_t>;
+namespace ipos::profibus {
 
 enum class Delimiter : uint8_t { SD1 = 0x10, SD2 = 0x68, SD3 = 0xA2, SD4 = 0xDC, SC = 0xE5 };
 inline constexpr uint8_t kEndDelimiter = 0x16;

@@ -62,7 +62,7 @@ const profibus::Octets& inputs_of(const runtime::Plant& plant) {
   return plant.all<runtime::ProfibusControl>()[0]->master().slave(0).inputs();
 }
 int word(const profibus::Octets& octets, size_t number) {  // PI1 is 1
-  return octets.at(2 * number - 2) << 8 | octets.at(2 * number - 1);
+  return octets[2 * number - 2] << 8 | octets[2 * number - 1];
 }
 
 TEST(FurtherWords, OverTheCardOfAMovidriveB) {

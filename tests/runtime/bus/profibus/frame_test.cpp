@@ -89,7 +89,7 @@ rc::Gen<std::optional<uint8_t>> access_point() {
                                      [](int n) { return std::optional<uint8_t>(static_cast<uint8_t>(n)); }));
 }
 uint8_t octet(int from, int to) { return static_cast<uint8_t>(*rc::gen::inRange(from, to)); }
-Octets some(size_t size) { return *rc::gen::container<Octets>(size, rc::gen::arbitrary<uint8_t>()); }
+Octets some(size_t size) { return *rc::gen::container<std::vector<uint8_t>>(size, rc::gen::arbitrary<uint8_t>()); }
 
 FdlFrame any_frame() {
   const int kind = *rc::gen::inRange(0, 8);

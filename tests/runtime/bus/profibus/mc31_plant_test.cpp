@@ -52,7 +52,7 @@ struct Mc31Plant {
   profibus::Master& master() { return plant->all<runtime::ProfibusControl>()[0]->master(); }
   uint16_t input(size_t word, size_t from = 0) {  // as the master has it
     const profibus::Octets& octets = master().slave(0).inputs();
-    return static_cast<uint16_t>(octets.at(from + 2 * word) << 8 | octets.at(from + 2 * word + 1));
+    return static_cast<uint16_t>(octets[from + 2 * word] << 8 | octets[from + 2 * word + 1]);
   }
   std::unique_ptr<runtime::Plant> plant;
 };

@@ -151,7 +151,7 @@ TEST(FdlReceiver, LumpsFromAPort) {
 
 RC_GTEST_PROP(FdlReceiverProperty, GivesBackWhatWasSentAfterAnyNoise, ()) {
   Bench bench;
-  const auto noise = *rc::gen::container<Octets>(rc::gen::arbitrary<uint8_t>());
+  const Octets noise = *rc::gen::container<std::vector<uint8_t>>(rc::gen::arbitrary<uint8_t>());
   for (const uint8_t octet : noise) {
     bench.idle(*rc::gen::inRange(0, 40));
     bench.feed(octet, *rc::gen::inRange(0, 8) == 0, *rc::gen::inRange(0, 16) == 0);

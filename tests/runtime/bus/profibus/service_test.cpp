@@ -27,7 +27,7 @@ TEST(SetPrm, FieldsOfTheCapture) {
 }
 
 RC_GTEST_PROP(SetPrmProperty, OctetsThroughFields, ()) {
-  const auto octets = *rc::gen::container<Octets>(rc::gen::arbitrary<uint8_t>());
+  const Octets octets = *rc::gen::container<std::vector<uint8_t>>(rc::gen::arbitrary<uint8_t>());
   const auto prm = decode_prm(octets);
   RC_ASSERT(prm.has_value() == (octets.size() >= 7));
   if (prm) RC_ASSERT(encode(*prm) == octets);
