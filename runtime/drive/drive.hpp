@@ -135,6 +135,8 @@ class Drive final : private DriveLink {
 
   // --- what it shows ---
   Words pi() const;
+  // Those of its words that may change in a tick in which nothing is decided, the first in bit 0.
+  uint16_t counting_words() const;
   const FurtherWords& further_pi() const { return further_pi_; }
   Verdict verdict() const { return verdict_of(decided()); }  // what it is told, and why not more
   UnitCondition condition() const;

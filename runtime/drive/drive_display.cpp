@@ -98,6 +98,19 @@ Drive::Words Drive::pi() const {
   return words;
 }
 
+uint16_t Drive::counting_words() const {
+  const bool noisy = state_.axis.machine().noise != 0;
+  unsigned words = 0;
+  for (size_t n = 0; n < kProcessWords; ++n) {
+    const auto assignment = static_cast<PiAssignment>(settings().pi[n]);
+    const bool position = assignment == PiAssignment::PositionLow || assignment == PiAssignment::PositionHigh;
+    const bool measured = assignment == PiAssignment::Speed || assignment == PiAssignment::RelativeSpeed ||
+                          assignment == PiAssignment::OutputCurrent || assignment == PiAssignment::ActiveCurrent;
+    if (position || (noisy && measured)) words |= 1U << n;
+  }
+  return static_cast<uint16_t>(words);
+}
+
 uint16_t Drive::pi_word(size_t n) const {
   const AxisState& axis = state_.axis.state();
   const int32_t speed = shown_speed();

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "runtime/bus/can/line.hpp"
 #include "runtime/bus/canopen/node.hpp"
@@ -26,11 +27,15 @@ class CanopenPort final : public StationPort,
               std::string_view station, const SbusSettings& settings, Door& door, Journal& journal);
 
   void power_off() override;
-  // What goes out on change may go out now.
+  // What goes out on change may go out now: where the tick was more than counting, and where the node follows a word that
+  // counts.
   Time tick(Time now) override {
-    node_->unit_changed(now);
-    objects_.tick(now / kMillisecond, door_.variables_in_turn());
-    return now + kMillisecond;
+    const uint32_t executed = door_.executed();
+    if (std::exchange(seen_, executed) != executed || node_->follows(door_.counting_words())) node_->unit_changed(now);
+    const int64_t ms = now / kMillisecond;
+    const int64_t due = objects_.tick(ms, door_.variables_in_turn());
+    if (node_->follows(door_.counting_words())) return now + kMillisecond;
+    return due == INT64_MAX ? kNever : now + (due - ms) * kMillisecond;
   }
   bool has_waiting_frames() const override { return line_.has_waiting(node()); }
 
@@ -57,8 +62,11 @@ class CanopenPort final : public StationPort,
   void partner_lost(Time now) override;
   void partner_back(Time now) override;
   void on_ignored(Time now, const Frame& frame, canopen::IgnoredMessage reason) override;
+  // The next tick comes in its turn.
+  void follow_again(Time) override { door_.touch(); }
   void note(Time now, Weight weight, std::string text);
 
+  uint32_t seen_ = UINT32_MAX;  // Door::executed() of the last tick
   Door& door_;
   LinePort sender_;
   VariableObjects objects_;

@@ -68,6 +68,7 @@ void Station::list_ports() {
   add(xt_);
   for (const auto& port : sbus_) add(port);
   for (const auto& port : canopen_) add(port);
+  tells_changes_ = canopen_[0] || canopen_[1];
   add(profibus_);
 }
 
@@ -233,7 +234,7 @@ void Station::resume_tick() {
 }
 
 Time Station::send(Time now) {
-  if (ticks_.sends_pending()) ticks_.settle();
+  if (ticks_.sends_pending() || tells_changes_) ticks_.settle();
   Time next = kNever;
   for (StationPort* port : ports_) next = std::min(next, port->tick(now));
   return next;
@@ -250,11 +251,12 @@ Ticks Station::horizon_of_idle(Time first) {
   return ticks;
 }
 
-// Who is on a serial line is asked at any time.
+// Who is on a serial line is asked at any time. A CANopen node tells what the unit decides.
 Ticks Station::silence(Time first) {
   if (ticks_.mode() != ManyTicks::Mode::Idle && (x13_ || xt_)) return 0;
   const Ticks known = ticks_.known_silence();
-  return known != 0 ? known : find_silence(first);
+  const Ticks silent = known != 0 ? known : find_silence(first);
+  return tells_changes_ ? std::min(silent, ticks_.undecided()) : silent;
 }
 
 Ticks Station::find_silence(Time first) {

@@ -211,6 +211,7 @@ class Station final : private Timed, private TaskRunner {
   StationLines lines_;
   Journal& journal_;
   bool leads_ = false;  // a group of slaves: what it sends is the drive's
+  bool tells_changes_ = false;  // what its unit decides goes out in the millisecond in which it does
   std::vector<DriveWatcher*> watchers_;
   CommandRunner* runner_ = nullptr;
   bool in_tick_ = false;

@@ -27,6 +27,10 @@ class Door final {
 
   // Ticks are still to be executed.
   bool is_behind() const { return pacer_.behind(); }
+  // Grows with each millisecond that has executed more than counting.
+  uint32_t executed() const { return unit_.executed(); }
+  // PI words that may change in the others, PI1 in bit 0.
+  uint16_t counting_words() const { return unit_.drive().counting_words(); }
   // There is something to tell about what telegrams wanted.
   bool has_reasons() const { return unit_.server().has_reasons(); }
 

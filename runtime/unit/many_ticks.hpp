@@ -46,6 +46,8 @@ class ManyTicks final {
     if (left_ == 0) return 0;
     return mode_ == Mode::Idle ? left_ : lets_wait() ? kLatest : 0;
   }
+  // The next ticks in which the unit decides nothing, whatever its program does.
+  Ticks undecided() const { return mode_ == Mode::Idle || lets_wait() ? left_ : 0; }
   bool lets_wait() const { return mode_ == Mode::Ahead && left_ != 0 && !reach_.may_fault; }
 
   Mode mode() const { return mode_; }

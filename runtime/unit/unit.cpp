@@ -131,6 +131,7 @@ void Unit::take_variables(Time now) {
 }
 
 void Unit::store(Time now) {
+  ++executed_;
   drive_.memory().tick(now);
   if (drive_.memory().has_messages()) report_memory(now);
 }

@@ -73,7 +73,7 @@ class Unit final {
   void advance(Ticks ticks);
   void count_timers();
   void take_variables(Time now);
-  void store(Time now);
+  void store(Time now);  // at the end of each that is executed
 
   // --- power and program ---
   // Drive and positioning, before buses are connected; then restart_program_memory().
@@ -118,6 +118,8 @@ class Unit final {
   MovilinkCommand& movilink() { return movilink_; }
   const MovilinkCommand& movilink() const { return movilink_; }
   const std::array<VariableObjects*, 2>& objects() const { return objects_; }
+  // Milliseconds so far that were more than counting: in all others drive and program decide nothing.
+  uint32_t executed() const { return executed_; }
   // Commands of the tasks in a millisecond.
   const vm::Rates& rates() const { return rates_ ? *rates_ : drive_.rates(); }
   // Programs started so far: what was found out about one holds for it alone.
@@ -151,6 +153,7 @@ class Unit final {
   TaskRunner* runner_ = nullptr;
   bool in_tasks_ = false;        // the runner has stopped between two commands
   bool fault_reported_ = false;  // of the program
+  uint32_t executed_ = 0;
   std::optional<vm::Rates> rates_;
   UnitInputs inputs_;
   Timers timers_;

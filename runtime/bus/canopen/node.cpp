@@ -69,6 +69,7 @@ void Node::enter(Time now, State state) {
     sdo_timeout_.stop();
   }
   emergency_.may_send(now);
+  unit_.follow_again(now);
 }
 
 // What it has listened to before does no harm.
@@ -217,9 +218,10 @@ void Node::on_written(Time now, Address address, Rule rule) {
   if (index >= objects::kReceivePdo && index < objects::kTransmitPdo) {
     receive_[pdo].configure();
     note_length(now, pdo, false);
-  } else if (index >= objects::kTransmitPdo && index < objects::kOutput)
+  } else if (index >= objects::kTransmitPdo && index < objects::kOutput) {
     transmit_[pdo].configure(now);
-  else if (index == objects::kEmergencyId || index == objects::kEmergencyInhibit)
+    unit_.follow_again(now);
+  } else if (index == objects::kEmergencyId || index == objects::kEmergencyInhibit)
     emergency_.may_send(now);
   else
     error_control_.configure(now);

@@ -2,6 +2,7 @@
 // guarding and heartbeat before one unit.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string_view>
@@ -59,6 +60,12 @@ class Node final : private EventTarget,
 
   // Process input data or the status of the unit may be others than at the last call.
   void unit_changed(Time now);
+
+  // It sends on change, and one of these words matters to it, PI1 in bit 0.
+  bool follows(uint16_t words) const {
+    return words != 0 && std::any_of(transmit_.begin(), transmit_.end(),
+                                     [words](const TransmitPdo& pdo) { return pdo.follows(words); });
+  }
 
   State state() const { return state_; }
   const ObjectDictionary& dictionary() const { return dictionary_; }

@@ -18,6 +18,13 @@ std::optional<uint32_t> id_of(const ObjectDictionary& dictionary, uint16_t index
 
 uint8_t bytes_of(const Mapping& mapping) { return static_cast<uint8_t>(bits_of(mapping) / 8); }
 
+uint16_t words_of(const Mapping& mapping) {
+  unsigned words = 0;
+  for (const Mapped& mapped : mapping)
+    if (is_word(mapped)) words |= 1U << (mapped.address.sub - 1);
+  return static_cast<uint16_t>(words);
+}
+
 }  // namespace
 
 PdoData pack(const Mapping& mapping, const Words& words) {
@@ -106,6 +113,7 @@ void TransmitPdo::configure(Time now) {
   inhibit_time_ = Time{value(objects::kInhibitTime)} * kInhibitUnit;
   event_time_ = Time{value(objects::kEventTimer)} * kMillisecond;
   mapping_ = mapping_of(dictionary_, entry_index(objects::kTransmitMapping, number_));
+  words_ = words_of(mapping_);
   if (!runs_) return;
   if (was_on != id_.has_value() || type_ != old_type) return start(now);
   if (event_time_ == 0)
@@ -156,8 +164,9 @@ void TransmitPdo::on_remote(Time now) {
     trigger(now);
 }
 
+// One that waits is sent with what the words are then.
 void TransmitPdo::inputs_changed(Time now) {
-  if (runs_ && id_ && pdo_types::is_event(type_) && sample(now) != last_) trigger(now);
+  if (sends_on_change() && sample(now) != last_) trigger(now);
 }
 
 void TransmitPdo::trigger(Time now) {
@@ -172,7 +181,9 @@ void TransmitPdo::trigger(Time now) {
 }
 
 void TransmitPdo::on_timer(Time now, uint32_t kind) {
-  if (kind == kEventTime || waits_) trigger(now);
+  if (kind == kInhibit && !waits_) return;
+  trigger(now);
+  unit_.follow_again(now);
 }
 
 void TransmitPdo::send(Time /*now*/, const PdoData& data) {

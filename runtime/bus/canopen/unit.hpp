@@ -25,6 +25,8 @@ class Unit {
   virtual void take_output(Time now, const Words& words, uint16_t written) = 0;
   virtual Words input(Time now) = 0;
   virtual UnitStatus status(Time now) = 0;
+  // What it sends on change is other than before, or was held back: Node::unit_changed() is to come in the next millisecond.
+  virtual void follow_again(Time /*now*/) {}
   virtual void synchronize(Time now) = 0;  // a SYNC came, and its process data have been taken
 
   // Process data are exchanged in `operational` only.
