@@ -348,6 +348,15 @@ class Station(lib.Named, SignalOwner):
     def powered(self, on: bool) -> None:
         self._plant._call("power", self._number, bool(_level(on)))
 
+    @property
+    def mains(self) -> bool:
+        """The mains of the unit; without them it runs on its 24 V supply, and its motor not at all."""
+        return bool(self._state("mains"))
+
+    @mains.setter
+    def mains(self, on: bool) -> None:
+        self._write("write", self._find(lib.STATE, "mains"), int(_level(on)))
+
     def power_off(self) -> None:
         self.powered = False
 

@@ -17,6 +17,7 @@ enum Element : uint32_t { kBusType, kAddress, kFormat, kService, kIndex, kDPoint
 enum Data : uint32_t { kWritePar, kReadPar, kPO1, kPI1 = 5 };
 
 constexpr int32_t kOwnUnit = 253;
+constexpr Time kEarly = 100 * kMillisecond;  // after power-on, when no real partner would be ready (ours)
 
 struct BusRow {
   int32_t code;
@@ -103,6 +104,10 @@ vm::HostReply MovilinkCommand::start(Time now, vm::Machine& machine, int context
     return refuse(return_codes::kCommunication,
                   fmt::format("MOVLNK: the station is not connected to {}", row->text));
   route.remember_partner(job.bus.address, *format);
+  if (tells_early_ && now - begun_ < kEarly)
+    journal_.note(now, Weight::Why, station_,
+                  "MOVLNK asks a partner within 100 ms of power-on and finds it there: a real unit takes longer until it is ready, "
+                  "as start_up of its [[station]] says");
   route.jobs.push_back(job);
   if (route.jobs.size() > 1) return {vm::Answer::Wait};
   if (const auto code = route.master->start(now, job.bus)) {

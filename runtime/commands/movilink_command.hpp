@@ -42,6 +42,11 @@ class MovilinkCommand final {
   // Wait: the context is resumed when it is. `why` says why an exchange could not be begun.
   vm::HostReply start(Time now, vm::Machine& machine, int context, uint32_t variable, std::string& why);
 
+  // Power-on. `tells_early`: who asks a partner at once hears that a real one would not be ready.
+  void power_on(Time now, bool tells_early) {
+    begun_ = now;
+    tells_early_ = tells_early;
+  }
   void stop();  // program stop: pending exchanges are given up
 
   // The context that waits for an exchange was stopped: the exchange ends on the bus, but nobody takes its
@@ -92,6 +97,8 @@ class MovilinkCommand final {
   std::string station_;
   std::array<Route, kMovilinkBuses> routes_;
   std::vector<uint32_t> structures_;  // of commands carried out
+  Time begun_ = 0;
+  bool tells_early_ = false;
 };
 
 }  // namespace ipos::runtime

@@ -67,6 +67,8 @@ void hear_faults(const ControlInputs& in, Verdict& verdict) {
   const Block why = in.fault_is_warning ? Block::Warning : Block::Fault;
   if (in.starting_up) verdict.restrict_to(Command::Inhibit, Block::StartUp);
   if (in.factory_setting) verdict.restrict_to(Command::Inhibit, Block::FactorySetting);
+  if (in.link_is_low) verdict.restrict_to(Command::Inhibit, Block::NoMains);
+  if (in.mains_response) verdict.restrict_to(*in.mains_response, Block::MainsOff);
   switch (in.fault_stop) {
     case FaultStop::None: break;
     case FaultStop::Rapid: verdict.restrict_to(Command::RapidStop, why); break;

@@ -45,6 +45,8 @@ struct ControlInputs {
   bool fault_is_warning = false;
   bool factory_setting = false;
   bool starting_up = false;
+  bool link_is_low = false;                   // no mains, and no DC link any more
+  std::optional<Command> mains_response;      // of P521, while it acts
   bool waiting = false;                  // display t
   std::optional<uint16_t> bus_word;      // of the bus of P101; nothing: terminals
   Block bus_word_missing = Block::None;  // why bus_word is a made-up 0

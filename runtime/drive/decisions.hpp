@@ -37,6 +37,10 @@ struct Situation {
   Command halt = Command::Enable;  // _AxisStop
   bool starting_up = false;
   bool factory_setting = false;
+  bool mains = true;          // there are some
+  bool mains_stop = false;    // the response of P521 acts
+  bool link_is_low = false;   // the DC link is too low for the power section: 24 V operation
+  bool unused = false;        // fills the last word
   bool output_stage = false;
   bool reversing = false;  // the ramp's output is CCW: decides which down ramp a stop takes
 
@@ -88,6 +92,7 @@ struct Decisions {
   bool temperature_sensor = false;
   bool both_limit_switches = false;
   bool parameter_switch = false;
+  bool mains_gone = false;  // as an input with MAINS ON says
 
   // The setpoint: what goes into the parts with a memory, and into the choice, whose places for their results
   // are still empty.

@@ -62,8 +62,10 @@ Drive::Drive(ParameterStore& parameters, const MachineData& machine)
       settings_(reader_.read(parameters)),
       settings_version_(parameters.changes()),
       state_(Axis(machine_of(machine, parameters))),
+      least_dc_link_(state_.axis.machine().dc_link / 100 * kLowLinkPercent),
       shown_for_(settings_version_ - 1) {
   now_.set(&Situation::starting_up, starting_up());
+  if (!parameters.options().mains) begin_without_mains();
   parameters.connect(*this);
 }
 
@@ -191,6 +193,21 @@ void Drive::order_load(AxisOrder& order) const {
   order.shaft_speed = state_.shaft_speed;
 }
 
+void Drive::set_mains(bool on) {
+  if (on == now_->mains) return;
+  steady_left_ = 0;
+  now_.set(&Situation::mains, on);
+  state_.axis.set_mains(on);
+}
+
+// A unit that is switched on by its 24 V alone.
+void Drive::begin_without_mains() {
+  now_.set(&Situation::mains, false);
+  now_.set(&Situation::link_is_low, true);
+  state_.axis.set_mains(false);
+  state_.axis.empty_dc_link();
+}
+
 // The count of increments and what it has of the next one; like them it wraps after 2^31 increments.
 int64_t Drive::shaft_angle() const {
   const double increments = shaft_position() + state_.axis.part_of_increment();
@@ -283,12 +300,13 @@ void Drive::decide_and_watch() {
   decided();
   const bool anew = !applied_ || now_->faults.shown() != 0;
   if (anew) apply();
-  if (watch_links() || anew || machine_suffers()) {
+  if (watch_links() || anew || machine_suffers() || now_->link_is_low) {
     watch_machine();
     select_parameter_set();
   }
+  if (counts_mains()) watch_mains();
   decided();
-  const bool quiet = applied_ && now_->faults.shown() == 0 && !links_run() && !scope_.runs();
+  const bool quiet = applied_ && now_->faults.shown() == 0 && !links_run() && !scope_.runs() && !now_->link_is_low && !counts_mains();
   quiet_for_ = quiet ? now_.changes() : now_.changes() - 1;
 }
 
@@ -339,7 +357,7 @@ bool Drive::links_run() const {
 // Something of the axis is beyond where watch_machine() lets it be.
 inline bool Drive::machine_suffers() const {
   const PowerSection& power = state_.axis.power();
-  return power.dc_link() > kOvervoltage || power.heat_sink() > kOvertemperature ||
+  return power.dc_link() > kOvervoltage || power.dc_link() < least_dc_link_ || power.heat_sink() > kOvertemperature ||
          power.motor_utilization() >= kFullUtilization ||
          (state_.limited_ms != 0 && state_.limited_ms > set().speed_monitoring_delay);
 }
@@ -454,9 +472,18 @@ void Drive::watch_machine() {
 
   const AxisState& axis = state_.axis.state();
   if (axis.dc_link > kOvervoltage) raise_fault(faults::kDcLink);
+  now_.set(&Situation::link_is_low, axis.dc_link < least_dc_link_);
   if (axis.heat_sink > kOvertemperature) raise_fault(faults::kHeatSink);
   follow(set().motor_protection == 1 && axis.motor_utilization >= kFullUtilization, faults::kMotorOverload);
   if (state_.limited_ms > set().speed_monitoring_delay) raise_fault(faults::kSpeedMonitoring);
+}
+
+// P520 counts from where the input says that the mains are off; what P521 orders ends when it says that they are back.
+void Drive::watch_mains() {
+  const bool gone = decisions_.mains_gone;
+  const bool stop = gone && ++state_.mains_off_ms > settings().mains_off_time;
+  if (!gone || stop) state_.mains_off_ms = 0;
+  now_.set(&Situation::mains_stop, stop);
 }
 
 // P500: 1 motor mode, 2 regenerative, 3 both (1053 1610 p. 77).
@@ -521,6 +548,7 @@ void Drive::tick(const PositionControl& position) {
 
 void Drive::power_cycle() {
   state_.up_ms = 0;
+  const bool mains = now_->mains;
   Situation first;
   first.inputs = now_->inputs;
   first.analog = now_->analog;
@@ -535,7 +563,7 @@ void Drive::power_cycle() {
 
   responses_ = {};
   state_.reset_input = false;
-  state_.auto_reset_ms = state_.auto_resets = state_.limited_ms = 0;
+  state_.auto_reset_ms = state_.auto_resets = state_.limited_ms = state_.mains_off_ms = 0;
 
   state_.cw_input = state_.ccw_input = state_.stopped_by_setpoint = false;
   if (settings().keep_motor_pot != 1) state_.motor_pot = {};
@@ -547,6 +575,7 @@ void Drive::power_cycle() {
   state_.position = {};
   state_.counter_shift = 0U - static_cast<uint32_t>(shaft_position());  // the shaft stays where it is
   state_.axis.reset();
+  if (!mains) begin_without_mains();
   state_.outputs = {};
   shown_for_ = settings_version_ - 1;
   state_.factory_setting_ms = state_.mains_ms = state_.enabled_ms = 0;

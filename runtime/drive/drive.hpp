@@ -52,6 +52,10 @@ class Drive final : private DriveLink {
   void set_load_torque(int32_t torque);
   int32_t load_torque() const { return state_.load_torque; }
   void set_shaft_speed(int32_t speed);
+  // The mains go or come back, while the 24 V of the electronics stay.
+  void set_mains(bool on);
+  bool mains() const { return now_->mains; }
+  bool runs_on_24v() const { return now_->link_is_low; }  // and can do nothing with its motor
   bool is_driven() const { return state_.axis.machine().driven; }
 
   // PO words of a telegram; words it does not carry keep their value. They show in P094..P096 in any case and
@@ -199,6 +203,8 @@ class Drive final : private DriveLink {
   static constexpr int32_t kOvertemperature =
       90;  // °C of the heat sink, where the unit protects itself; ours
   static constexpr int32_t kFullUtilization = 100'000;
+  // Of its voltage at mains, below which the power section is off; ours.
+  static constexpr int32_t kLowLinkPercent = 60;
 
   // An actual value as it is measured ([station] noise): another one of each kind in each millisecond.
   enum class Noise : uint8_t { Speed, Current, ActiveCurrent };
@@ -254,6 +260,7 @@ class Drive final : private DriveLink {
   uint16_t pi_word(size_t n) const;
   int32_t user_display() const;
   int32_t share_of_ai2(int32_t limit) const;
+  int32_t with_torque_limit(int32_t current_limit) const;
 
   LinkWatch& touched_watch(PoSource source);
   void note_heard();
@@ -280,6 +287,10 @@ class Drive final : private DriveLink {
   void watch_resets();
   bool links_run() const;
   bool machine_suffers() const;
+  bool counts_mains() const { return decisions_.mains_gone != now_->mains_stop; }
+  Command mains_off_response() const;
+  void begin_without_mains();
+  void watch_mains();
   void count_limited();
   void watch_machine();
   void clear_faults();
@@ -348,7 +359,8 @@ class Drive final : private DriveLink {
     bool reset_input = false;  // level at the last tick
     int32_t auto_reset_ms = 0;
     int auto_resets = 0;
-    int32_t limited_ms = 0;  // at the current limit
+    int32_t limited_ms = 0;    // at the current limit
+    int32_t mains_off_ms = 0;  // that an input with MAINS ON says so
 
     bool cw_input = false, ccw_input = false;
     bool stopped_by_setpoint = false;
@@ -369,6 +381,7 @@ class Drive final : private DriveLink {
     int64_t counted_energy = 0;
   };
   State state_;
+  int32_t least_dc_link_;  // mV
   FurtherWords further_po_{}, further_pi_{};                   // nothing that the drive does depends on them
   Scope scope_;                                                // while it runs every tick is executed
   std::array<std::optional<FaultResponse>, 256> responses_{};  // chosen by the program, by fault number

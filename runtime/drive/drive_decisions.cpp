@@ -35,7 +35,7 @@ void Drive::decide_anew() const {
   d.enabled_locally = decide_locally(in).command == Command::Enable;
   d.waiting = in.waiting;
   d.can_position = mode_can_position();
-  d.ready = !now_->faults.error() && !now_->factory_setting && !now_->starting_up;
+  d.ready = !now_->faults.error() && !now_->factory_setting && !now_->starting_up && !now_->link_is_low;
   const auto flag = [](bool on, uint32_t bit) { return on ? bit : 0; };
   d.output_flags = flag(now_->faults.error(), output_flags::kFault) |
                    flag(is_ipos_fault(now_->faults.error_number()), output_flags::kIposFault) |
@@ -49,6 +49,8 @@ void Drive::decide_anew() const {
   d.external_fault = t.off(F::ExternalFault) || (now_->ipos_word & kIposFault) != 0;
   d.temperature_sensor = t.off(F::TemperatureSensor);
   d.both_limit_switches = t.off(F::LimitCw) && t.off(F::LimitCcw);
+  // The contact of a mains relay; it hangs on the same mains (ours).
+  d.mains_gone = t.off(F::MainsOn) || (!now_->mains && t.assigned(F::MainsOn));
   d.parameter_switch = function_on(t, F::ParameterSwitch) ||
                        (control_order().control_word.value_or(0) & control_bits::kParameterSet) != 0;
   decide_setpoint(d);
@@ -142,6 +144,8 @@ ControlInputs Drive::control_inputs(const Terminals& t) const {
   in.fault_is_warning = now_->faults.warning();
   in.factory_setting = now_->factory_setting;
   in.starting_up = now_->starting_up;
+  in.link_is_low = now_->link_is_low;
+  if (now_->mains_stop) in.mains_response = mains_off_response();
   const bool free_run = runs_free(t);
   in.waiting = !free_run && is_waiting();
   in.follows_master = is_master_slave(s);
@@ -157,6 +161,11 @@ ControlInputs Drive::control_inputs(const Terminals& t) const {
       in.bus_word = order.control_word;
   }
   return in;
+}
+
+// P521: 0 controller inhibit, 1 emergency stop (1053 1610 p. 77).
+Command Drive::mains_off_response() const {
+  return settings().mains_off_response == 1 ? Command::EmergencyStop : Command::Inhibit;
 }
 
 bool Drive::mode_can_position() const {

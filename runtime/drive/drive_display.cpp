@@ -37,7 +37,7 @@ UnitCondition Drive::enabled_condition() const {
 }
 
 UnitCondition Drive::condition() const {
-  if (starting_up()) return UnitCondition::NotReady;
+  if (starting_up() || now_->link_is_low) return UnitCondition::NotReady;
   if (parameters_.factory_setting_running()) return UnitCondition::FactorySetting;
   if (now_->faults.error()) return UnitCondition::NotReady;
   const Verdict now = verdict();
@@ -214,6 +214,7 @@ std::optional<int32_t> Drive::live_value(uint16_t index) const {
     case index::kOutputCurrentAmpere:
       return static_cast<int32_t>(int64_t{noisy(axis.output_current, kIn, Noise::Current)} * state_.axis.machine().unit_current / 100'000);
     case index::kRatedCurrent: return state_.axis.machine().unit_current;
+    case index::kUnitType: return parameters_.options().type_code;
     case index::kFirmware: return kFirmwarePart + parameters_.options().firmware;
     case index::kActiveCurrent: return noisy(axis.active_current, kIn, Noise::ActiveCurrent);
     case index::kMotorUtilization1: return now_->second_set ? 0 : axis.motor_utilization;

@@ -1,5 +1,6 @@
 // What the drive tells its axis: the setpoint from the cascade, ramps, stops, brake and limits.
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 #include "runtime/drive/drive.hpp"
@@ -107,6 +108,7 @@ AxisOrder Drive::axis_order(Command command) const {
   if (limit) order.current_limit = std::clamp(*limit, 0, order.current_limit);
   constexpr int32_t kAi2IsLimit = 2;
   if (s.ai2_mode == kAi2IsLimit) order.current_limit = share_of_ai2(order.current_limit);
+  if (s.torque_limit != 0 && is_field_oriented(p.operating_mode)) order.current_limit = with_torque_limit(order.current_limit);
   order.control.encoder = has_encoder(p.operating_mode);
   order.control.hoist = is_hoist(p.operating_mode);
   order.control.dc_braking = has_dc_braking(p.operating_mode);
@@ -118,7 +120,19 @@ AxisOrder Drive::axis_order(Command command) const {
   order.control.ixr = p.ixr_compensation;
   order.control.gain = s.speed_gain;
   order.control.time_us = s.speed_time;
+  order.control.precontrol = s.precontrol;
+  order.control.precontrol_us = s.precontrol_filter;
+  order.control.filter_us = s.speed_filter;
+  order.control.load_precontrol = is_field_oriented(p.operating_mode) ? s.load_precontrol : 0;
   return order;
+}
+
+// P304 bounds the active current, which is what makes torque; 0, the factory setting, does not (ours). Beside it the motor
+// has its magnetizing current.
+int32_t Drive::with_torque_limit(int32_t current_limit) const {
+  const auto square = [](int32_t current) { return static_cast<double>(current) * current; };
+  const double output = std::sqrt(square(settings().torque_limit) + square(state_.axis.machine().magnetizing_current));
+  return std::min(current_limit, static_cast<int32_t>(std::lround(output)));
 }
 
 // P120 = 2: 0..10 V at AI2 are 0..100 % of the current limit. P022 shows it of P303, whatever P120 is (ours).

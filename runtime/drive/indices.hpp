@@ -11,6 +11,7 @@ namespace ipos::runtime::index {
 inline constexpr uint16_t kPo1Description = 8304;  // P870..P872
 inline constexpr uint16_t kPi1Description = 8307;  // P873..P875
 inline constexpr uint16_t kFirmware = stdlib::kFirmwareIndex;  // P076
+inline constexpr uint16_t kUnitType = 8301;                        // P070
 inline constexpr uint16_t kStatus = 8310;                          // P010..P013, low word is status word 1
 inline constexpr uint16_t kSpeed = 8318;
 inline constexpr uint16_t kFrequency = 8319;

@@ -47,6 +47,9 @@ constexpr bool is_torque_control(int32_t operating_mode) {
   return operating_mode == 12 || operating_mode == 17;
 }
 
+// P700: CFC and SERVO, of which P205 and P304 are.
+constexpr bool is_field_oriented(int32_t operating_mode) { return operating_mode >= 11 && operating_mode <= 20; }
+
 // P700: from 5 on the modes have an encoder; those of MOVITRAC (21, 22) go by a V/f characteristic. P701 has the first five.
 constexpr bool has_encoder(int32_t operating_mode) { return operating_mode >= 5 && operating_mode <= 20; }
 constexpr bool is_hoist(int32_t operating_mode) { return operating_mode == 2 || operating_mode == 7; }

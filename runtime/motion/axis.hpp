@@ -165,6 +165,16 @@ class Axis : private AxisParts {
   int32_t motor_utilization_ahead() const { return power_.motor_utilization_ahead(); }
   int64_t energy_ahead() const { return power_.energy_ahead(); }
 
+  // Off: nothing holds the DC link (PowerSection::set_mains). An empty one has been without them for long.
+  void set_mains(bool on) {
+    catch_up();
+    power_.set_mains(on);
+  }
+  void empty_dc_link() {
+    catch_up();
+    power_.empty();
+    power_shown_ = false;
+  }
   // A reference travel, or the absolute encoder at power-on, sets the counter.
   void set_position(int32_t position);
   // Power off and on: everything stands and is cold, the counter at 0.

@@ -65,7 +65,7 @@ Motion Axis::drive_really(const AxisOrder& order, int64_t torque_limit, const Re
 Motion Axis::drive_in_detail(const AxisOrder& order, const Resistance& resistance) {
   if (!has_torque(sequence_.phase())) {
     details_.voltage.rest(order.control.hoist);
-    details_.control.rest(order.control.hoist);
+    details_.control.rest(order.control.hoist, power_.torque_of(order.control.load_precontrol));
     power_.set_flux(1'000);
     return {shaft_.free(speed_, 0, resistance), 0, false};
   }

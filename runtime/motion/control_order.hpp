@@ -17,6 +17,10 @@ struct ControlOrder {
   int32_t ixr = 0;            // P322, 1/1000 %
   int32_t gain = 2'000;       // P200, 1/1000
   int32_t time_us = 10'000;   // P201
+  int32_t precontrol = 0;     // P202, 1/1000
+  int32_t precontrol_us = 0;  // P203
+  int32_t filter_us = 0;      // P204
+  int32_t load_precontrol = 0;  // P205: active current at the start, 1/1000 % of IN
 };
 
 }  // namespace ipos::runtime

@@ -34,6 +34,8 @@ PowerSection::PowerSection(const MachineData& machine)
       rated_heat_(std::max<int64_t>(
           1, (square(machine.rated_active_current) + square(machine.magnetizing_current)) / kHundredPercent)),
       idle_charge_(square(machine.dc_link)),
+      least_charge_(idle_charge_),
+      mains_power_(machine.rated_power),
       charge_(idle_charge_),
       most_charge_(square(machine.braking_resistor ? machine.chopper_level : kTopDcLink)),
       dc_link_(machine.dc_link),
@@ -108,6 +110,25 @@ PowerSection::Lag::Lag(int32_t time_ms) {
   reciprocal_ = static_cast<uint64_t>(exact << (63 + shift_ - digits));
 }
 
-void PowerSection::find_dc_link() { dc_link_ = static_cast<int32_t>(root(charge_)); }
+// While the mains charge the link it changes every millisecond, so this is the place where they go on.
+void PowerSection::find_dc_link() {
+  dc_link_ = static_cast<int32_t>(root(charge_));
+  if (least_charge_ != 0 && least_charge_ != idle_charge_) charge_on();
+}
+
+void PowerSection::charge_on() {
+  least_charge_ = std::min(idle_charge_, std::max(charge_, least_charge_) + idle_charge_ / kChargeMs);
+}
+
+void PowerSection::set_mains(bool on) {
+  mains_power_ = on ? machine_.rated_power : 0;
+  least_charge_ = 0;
+  if (on) charge_on();
+}
+
+void PowerSection::empty() {
+  charge_ = 0;
+  dc_link_ = 0;
+}
 
 }  // namespace ipos::runtime

@@ -60,6 +60,11 @@ class PowerSection {
     motor_.follow(motor_target_);
     heat_sink_.follow(heat_sink_target_);
   }
+  // Without mains nothing holds the DC link, and nothing is drawn from them. When they come back, the link is charged in
+  // kChargeMs from empty.
+  void set_mains(bool on);
+  void empty();  // the DC link: as after a long time without mains
+
   // What so many steps with the last load do while the DC link stays as it is: energy and the slow
   // quantities. At most bound() of them.
   void advance(Ticks steps);
@@ -156,7 +161,7 @@ class PowerSection {
   // Mechanical power in 1/1000 % of the rated power; losses are added, what comes back charges the DC link.
   void step_power() {
     const int64_t change = std::clamp<int64_t>(power() + kStandby, -kMostPower, kMostPower) * charge_per_power_;
-    const int64_t charge = std::clamp(charge_ - change, idle_charge_, most_charge_);
+    const int64_t charge = std::clamp(charge_ - change, least_charge_, most_charge_);
     if (charge != charge_) {
       charge_ = charge;
       find_dc_link();
@@ -164,6 +169,7 @@ class PowerSection {
     draw(1);
   }
   void find_dc_link();
+  void charge_on();
   void draw(uint32_t steps) {
     energy_rest_ += drawn() * int64_t{steps};
     if (energy_rest_ < kPerWs) return;
@@ -172,12 +178,13 @@ class PowerSection {
   }
   int64_t power() const { return mechanical_ + losses_; }
   // In one step, of kPerWs for a Ws.
-  int64_t drawn() const { return std::clamp<int64_t>(power(), 0, kMostPower) * machine_.rated_power; }
+  int64_t drawn() const { return std::clamp<int64_t>(power(), 0, kMostPower) * mains_power_; }
   int32_t temperature(int64_t rise) const { return static_cast<int32_t>(machine_.ambient + rise / 1'000); }
 
   static constexpr Ticks kMostAtOnce = 60'000;
   static constexpr int64_t kMostPower = 100'000'000;  // 1/1000 % of the rated power
   static constexpr int64_t kStandby = 1'000;          // always taken from the DC link
+  static constexpr int64_t kChargeMs = 100;           // from empty; ours
   // The unit's rated power lifts the square of the DC link voltage by 10000 V² a millisecond: about 200 µF a kilowatt.
   static constexpr int64_t kChargePerPower = 100'000;  // mV² per 1/1000 %
   static constexpr int64_t kPerWs = int64_t{100'000} * 1'000;
@@ -203,6 +210,8 @@ class PowerSection {
   int32_t output_current_ = 0;
   int32_t active_current_ = 0;
   int64_t idle_charge_;  // square of the DC link voltage in mV², at mains
+  int64_t least_charge_;  // what the mains hold it at: that, 0 without them, in between while they charge it
+  int64_t mains_power_;   // the rated power in W while it comes from the mains, else 0
   int64_t charge_;       // now
   int64_t most_charge_;  // where the chopper holds it
   int32_t dc_link_;

@@ -44,7 +44,7 @@ std::optional<toml::table> parse_toml(PlantReader& reader, std::string_view text
 
 void read_plant_sections(PlantReader& reader, const toml::table& root,
                          const std::vector<std::string_view>& also) {
-  std::vector<std::string_view> known = {"bus", "station", "control", "fault", "stimulus", "wire", "switch", "machine"};
+  std::vector<std::string_view> known = {"bus", "station", "control", "fault", "stimulus", "wire", "switch", "machine", "seed"};
   known.insert(known.end(), also.begin(), also.end());
   reader.known_keys(root, "the plant", known);
   read_buses(reader, root);
@@ -53,6 +53,17 @@ void read_plant_sections(PlantReader& reader, const toml::table& root,
   read_faults(reader, root);
   read_foreign_machines(reader, root);
   read_surroundings(reader, root);
+  move_seeds(reader.result.plant, reader.count(root, "seed", INT32_MAX, 0));
+}
+
+void move_seeds(PlantFile& plant, uint64_t by) {
+  for (FaultConfig& fault : plant.faults) {
+    fault.fault.seed += by;
+    if (fault.profibus) fault.profibus->seed += by;
+  }
+  constexpr uint32_t kFarApart = 2'654'435'769U;  // odd, so that no two are the same
+  for (StationConfig& station : plant.stations)
+    station.machine.noise_seed += static_cast<uint32_t>(by) * kFarApart;
 }
 
 bool refuse_others(PlantReader& reader, const toml::table& root, std::string_view path, std::initializer_list<TomlKind> taken) {

@@ -225,6 +225,9 @@ struct PlantFileResult {
 // The path decides only whether a file with nothing but the name of a plant is a test or a campaign (toml_kind.hpp).
 PlantFileResult read_plant_file(std::string_view text, std::string_view path = {});
 
+// Another seed for all that goes by chance: line faults and the noise of actual values. By 0 nothing changes.
+void move_seeds(PlantFile& plant, uint64_t by);
+
 // The [[fault]] tables of a text, for a plant that is there; the result has only them.
 PlantFileResult read_fault_tables(std::string_view text, const PlantFile& plant);
 

@@ -138,6 +138,14 @@ std::string PlantReader::bus_name(const toml::table& table, std::string_view key
   return name;
 }
 
+std::optional<bool> PlantReader::off_or_on(const toml::table& table, std::string_view key, std::string_view what) {
+  const std::string word = text(table, key, what, true);
+  if (word == "off" || word == "on") return word == "on";
+  if (!word.empty())
+    error(place_of(*table.get(key)), fmt::format("unknown {} '{}'; known are off, on", key, word), AllowedValues{{"\"off\"", "\"on\""}});
+  return std::nullopt;
+}
+
 void PlantReader::unique(std::set<std::string>& names, const std::string& name, std::string_view what,
                          FilePlace place) {
   if (!name.empty() && !names.insert(name).second)
@@ -177,6 +185,9 @@ bool PlantReader::signal(const toml::table& table, std::string_view what,
   } else if (found == "state") {
     out.kind = SignalKind::State;
     bit = find_state(out.name);
+  } else if (found == "mains") {  // its value is off or on: the caller reads it
+    out.kind = SignalKind::Switch;
+    out.name = "mains";
   } else if (found == "switch") {
     out.kind = SignalKind::Switch;
     if (find_switch(out.name) == nullptr) {

@@ -79,6 +79,8 @@ class PlantReader {
   const stdlib::UnitType* unit_of(std::string_view station) const;
   // Nothing when it is not there.
   std::optional<bool> flag(const toml::table& table, std::string_view key);
+  // "off" or "on"; nothing with an error, or when it is not there.
+  std::optional<bool> off_or_on(const toml::table& table, std::string_view key, std::string_view what);
   // A value without sign from `least` up to `limit`, or `otherwise`.
   uint32_t count(const toml::table& table, std::string_view key, uint32_t limit, uint32_t otherwise,
                  uint32_t least = 0);

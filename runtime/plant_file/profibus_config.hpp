@@ -41,10 +41,11 @@ struct ProfibusOutput {
 };
 
 struct ProfibusOrder {
-  enum class Kind : uint8_t { Control, Start, Stop };
+  enum class Kind : uint8_t { Control, Start, Stop, Activate, Deactivate };
   Time at = 0;
   Kind kind = Kind::Control;
   profibus::GlobalCommand command;
+  size_t slave = 0;  // of Activate and Deactivate, in the order of the file
 };
 
 struct ProfibusMasterConfig {

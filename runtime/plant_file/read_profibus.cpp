@@ -143,24 +143,43 @@ class MasterReader {
                                       {"freeze", Kind::Control, global::kFreeze},
                                       {"unfreeze", Kind::Control, global::kUnfreeze},
                                       {"start", Kind::Start, 0},
-                                      {"stop", Kind::Stop, 0}};
+                                      {"stop", Kind::Stop, 0},
+                                      {"activate", Kind::Activate, 0},
+                                      {"deactivate", Kind::Deactivate, 0}};
     constexpr std::string_view kWhat = "a [[control.command]]";
-    reader_.known_keys(table, "[[control.command]]", {"at", "command", "groups"});
+    reader_.known_keys(table, "[[control.command]]", {"at", "command", "groups", "address"});
     const std::string word = reader_.text(table, "command", kWhat, true);
     const Time at = reader_.duration(table, "at", kWhat, true);
     const uint8_t groups = number(table, "groups", 255, 0);
     const auto row = std::find_if(std::begin(kWords), std::end(kWords),
                                   [&](const Word& known) { return known.word == word; });
-    if (row != std::end(kWords)) return config_.orders.push_back({at, row->kind, {row->command, groups}});
+    const bool of_one = row != std::end(kWords) && row->kind >= Kind::Activate;
+    if (table.contains("address") && row != std::end(kWords) && !of_one)
+      return reader_.error(place_of(*table.get("address")), "only activate and deactivate are of one slave");
+    const size_t slave = of_one ? read_slave_of(table, kWhat) : 0;
+    if (row != std::end(kWords)) return config_.orders.push_back({at, row->kind, {row->command, groups}, slave});
     if (!word.empty())
       reader_.error(
           place_of(*table.get("command")),
           fmt::format("'{}' is no command of a master; known are operate, clear, sync, unsync, freeze, "
-                      "unfreeze, start, stop",
+                      "unfreeze, start, stop, activate, deactivate",
                       word));
   }
 
  private:
+  // The slave with this address, in the order of the file.
+  size_t read_slave_of(const toml::table& table, std::string_view what) {
+    if (!table.contains("address")) {
+      reader_.error(place_of(table), fmt::format("{} needs address = ..., the slave", what));
+      return 0;
+    }
+    const uint8_t address = number(table, "address", profibus::kLastStation, 0);
+    for (size_t n = 0; n < config_.slaves.size(); ++n)
+      if (config_.slaves[n].address == address) return n;
+    reader_.error(place_of(*table.get("address")), fmt::format("the master has no slave {}", address));
+    return 0;
+  }
+
   static constexpr size_t kMostOctets = 244;  // of data with both access points
 
   uint8_t number(const toml::table& table, std::string_view key, uint32_t limit, uint32_t otherwise) {

@@ -45,6 +45,11 @@ void read_start_up(PlantReader& reader, const toml::table& table, uint32_t& ms) 
   ms = static_cast<uint32_t>(std::max<int64_t>(time, 0) / kMillisecond);
 }
 
+// Whether the unit is switched on with its mains, or by its 24 V supply alone (MOVITRAC 31 PROFIBUS, 3.1).
+void read_mains(PlantReader& reader, const toml::table& table, bool& mains) {
+  if (table.contains("mains")) mains = reader.off_or_on(table, "mains", "a [[station]]").value_or(true);
+}
+
 // MOVITRAC 07 comes as standard unit, a slave only, and as LOGODrive with IPOS (its manual, chapter 2).
 void read_logodrive(PlantReader& reader, const toml::table& table, StationConfig& config) {
   const toml::node* node = table.get("logodrive");
@@ -157,6 +162,7 @@ void read_station(PlantReader& reader, const toml::table& table) {
                      "firmware",
                      "logodrive",
                      "start_up",
+                     "mains",
                      "program",
                      "sbus",
                      "sbus2",
@@ -198,6 +204,7 @@ void read_station(PlantReader& reader, const toml::table& table) {
   }
   read_firmware(reader, table, config.options.firmware);
   read_start_up(reader, table, config.options.start_up_ms);
+  read_mains(reader, table, config.options.mains);
   read_logodrive(reader, table, config);
   config.program = reader.text(table, "program", "", false);
   if (const toml::node* program = table.get("program")) {

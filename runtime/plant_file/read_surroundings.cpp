@@ -72,6 +72,12 @@ void read_action(PlantReader& reader, const toml::table& table, std::string_view
                           fmt::format("{} has either {} or {}", what, found->key, row.key));
     found = &row;
   }
+  if (table.contains("mains")) {
+    if (found != nullptr)
+      return reader.error(place_of(*table.get(found->key)), fmt::format("{} has either mains or {}", what, found->key));
+    stimulus.value = reader.off_or_on(table, "mains", what).value_or(true) ? 1 : 0;
+    return;
+  }
   if (found == nullptr)
     return reader.error(stimulus.place, fmt::format("{} needs set, force, pulse or release", what));
   stimulus.action = found->action;
@@ -109,7 +115,7 @@ void read_times(PlantReader& reader, const toml::table& table, std::string_view 
 void read_stimuli(PlantReader& reader, const toml::table& table) {
   constexpr std::string_view kWhat = "a [[stimulus]]";
   reader.known_keys(table, "[[stimulus]]",
-                    {"station", "at", "variable", "parameter", "input", "analog", "switch", "signal", "set", "force",
+                    {"station", "at", "variable", "parameter", "input", "analog", "switch", "signal", "mains", "set", "force",
                      "pulse", "release", "for", "every", "times"});
   Stimulus stimulus;
   stimulus.place = place_of(table);
@@ -236,7 +242,7 @@ void check_drivers(PlantReader& reader) {
 }  // namespace
 
 bool read_stimulus(PlantReader& reader, const toml::table& table, std::string_view what, Stimulus& stimulus) {
-  if (!reader.signal(table, what, {"variable", "parameter", "input", "analog", "switch", "signal"}, stimulus.signal))
+  if (!reader.signal(table, what, {"variable", "parameter", "input", "analog", "switch", "signal", "mains"}, stimulus.signal))
     return false;
   read_action(reader, table, what, stimulus);
   read_times(reader, table, what, stimulus);

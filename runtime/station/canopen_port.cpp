@@ -112,10 +112,10 @@ canopen::Words CanopenPort::input(Time now) {
   return words;
 }
 
-// There is no 24 V backup in the model: without mains the station is off.
 canopen::UnitStatus CanopenPort::status(Time /*now*/) {
-  const uint16_t status = door_.look().drive().status_word_1();
-  return {status, (status & kFaultBit) != 0, false};
+  const Drive& drive = door_.look().drive();
+  const uint16_t status = drive.status_word_1();
+  return {status, (status & kFaultBit) != 0, drive.runs_on_24v()};
 }
 
 // After operational the drive stops rapidly until process data come again (ours): control word and setpoints 0.

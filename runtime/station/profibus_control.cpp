@@ -18,7 +18,8 @@ constexpr OwnBit kOwnBits[] = {
     {profibus::diag::kNonExistent,
      "does not answer (Station_Non_Existent): is it on the line, with this address, and has it power?"},
     {profibus::diag::kMasterLock, "belongs to another master (Master_Lock)"},
-    {profibus::diag::kInvalidResponse, "does not answer as it should (Invalid_Slave_Response)"}};
+    {profibus::diag::kInvalidResponse, "does not answer as it should (Invalid_Slave_Response)"},
+    {profibus::diag::kDeactivated, "is out of the cycle (Deactivated)"}};
 
 }  // namespace
 
@@ -90,6 +91,8 @@ void ProfibusControl::on_event(Time, uint32_t kind, uint64_t argument) {
     case ProfibusOrder::Kind::Control: return master_.control(order.command);
     case ProfibusOrder::Kind::Start: return master_.start();
     case ProfibusOrder::Kind::Stop: return master_.stop();
+    case ProfibusOrder::Kind::Activate: return master_.slave(order.slave).set_active(true);
+    case ProfibusOrder::Kind::Deactivate: return master_.slave(order.slave).set_active(false);
   }
 }
 

@@ -122,6 +122,7 @@ void Station::connect_profibus() {
 }
 
 bool Station::has_switch(StationSwitch which) const {
+  if (which == StationSwitch::Mains) return true;
   if (which == StationSwitch::S13)
     return !config_.serial.xt.bus.empty() && serial_interfaces(*config_.unit).xt_has_s13;
   if (config_.profibus.bus.bus.empty() || config_.profibus.option == nullptr) return false;
@@ -129,6 +130,7 @@ bool Station::has_switch(StationSwitch which) const {
 }
 
 int32_t Station::switch_value(StationSwitch which) const {
+  if (which == StationSwitch::Mains) return drive().state().mains() ? 1 : 0;
   if (which == StationSwitch::S13) return xt_ ? (xt_->baud() == kS13Baud ? 1 : 0) : config_.serial.s13 ? 1 : 0;
   const ProfibusUse& use = config_.profibus;
   const profibus::CardSwitches set = profibus_ ? profibus_->card().station().switches().set()
@@ -141,6 +143,12 @@ int32_t Station::switch_value(StationSwitch which) const {
 }
 
 std::optional<std::string> Station::set_switch(StationSwitch which, int32_t value) {
+  if (which == StationSwitch::Mains) {
+    if (std::as_const(*this).drive().state().mains() == (value != 0)) return std::nullopt;
+    drive().state().set_mains(value != 0);
+    journal_.tell(queue_.now(), Weight::Why, config_.name, value != 0 ? "the mains are back" : "the mains are off; the 24 V supply stays");
+    return std::nullopt;
+  }
   if (which == StationSwitch::S13) {
     if (!xt_) return "the station was never on";
     xt_->set_baud(value != 0 ? kS13Baud : kFactoryXtBaud);

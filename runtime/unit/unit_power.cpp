@@ -20,6 +20,7 @@ void Unit::power_on() {
     machine_.reset();
     drive_.power_cycle();
   }
+  movilink_.power_on(clock_.now(), config_.options.start_up_ms == 0);
   if (const uint8_t fault = drive_.memory().fault(); fault != 0) drive().raise_fault(fault);
   if (!has_variables()) return;
   begin_variables();

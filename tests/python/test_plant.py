@@ -248,6 +248,19 @@ def test_process_words_run_the_belt(line):
     assert not belt.enabled
 
 
+def test_mains(line):
+    belt = line["belt"]
+    assert belt.mains
+    belt.mains = False
+    line.run("4s")
+    assert not belt.mains and belt.powered and not belt.ready
+    assert "no mains" in belt.why
+    assert belt.parameters["P008"] == 0
+    belt.mains = True
+    line.run("1s")
+    assert belt.mains and belt.ready
+
+
 def test_power_program_and_faults(line):
     saw = line["saw"]
     line.run("50ms")

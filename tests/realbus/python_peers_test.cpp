@@ -11,6 +11,7 @@
 #include "runtime/os_port/serial_port.hpp"
 #include "runtime/os_port/system_clock.hpp"
 #include "tests/harness/proves.hpp"
+#include "tests/harness/reach.hpp"
 #include "tests/realbus/script.hpp"
 #include "tests/tools/command.hpp"
 
@@ -181,6 +182,20 @@ TEST(PythonPeers, CanopenMasterOfPythonCan) {
   const auto requests =
       std::distance(std::sregex_iterator(decoded.out.begin(), decoded.out.end(), remote), {});
   EXPECT_EQ(lines(theirs.output) + requests, lines(decoded.out)) << theirs.output.substr(0, 200);
+}
+
+// Manual operation over RS-485 from a PC, without a controller: it takes control and setpoint and gives both back, and where the
+// PC falls silent the drive's monitoring ends it.
+TEST(PythonPeers, ManualOperationAtRs485) {
+  if (!has_pty()) GTEST_SKIP() << kNoPty;
+  PROVES("MDB-TOC-02");
+  goes_through(kVerb);
+  const ScriptResult result =
+      run_script({kPython, "-B", project("tests/serve/jog_test.py").string(), ipos_program(), "GivenBack.test_control_and_setpoint",
+                  "GivenBack.test_a_response_that_lets_it_go_on"});
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_NE(result.output.find("Ran 2 tests"), std::string::npos) << result.output;
+  EXPECT_EQ(result.output.find("skipped"), std::string::npos) << result.output;
 }
 
 // Two slaves on one line in real time, noise, and a careless master. The long form is "1000000 100000 1000".

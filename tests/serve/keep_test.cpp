@@ -96,7 +96,7 @@ class Hand {
   }
 
   void act() {
-    switch (below(12)) {
+    switch (below(13)) {
       case 0: case 1: case 2: return input();
       case 3: return set(one_of(variables_), below(2) == 0 ? "set" : "force", std::to_string(below(5000)));
       case 4: return set(station() + (below(2) == 0 ? ".PO1" : ".PO2"), below(2) == 0 ? "set" : "force", std::to_string(below(2000)));
@@ -106,6 +106,7 @@ class Hand {
       case 8: return line_fault();
       case 9: return ask({{"do", "reset"}, {"station", station()}});
       case 10: return send();
+      case 11: return ask({{"do", "mains"}, {"station", station()}, {"on", below(2) != 0}});
       default: return ask({{"do", "analog"}, {"station", station()}, {"name", "AI1"},
                            {"action", below(2) == 0 ? "set" : "force"}, {"value", std::to_string(below(10)) + " V"}});
     }

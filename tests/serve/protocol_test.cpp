@@ -198,6 +198,38 @@ TEST_F(Serving, APulseEndsByItself) {
   EXPECT_EQ(topic({{"topic", "plant"}})["stations"]["saw"]["in"], 1);
 }
 
+TEST_F(Serving, MainsGoOffAndOn) {
+  const auto saw = [&] { return topic({{"topic", "plant"}})["stations"]["saw"]; };
+  EXPECT_EQ(saw()["mains"], true);
+  EXPECT_EQ(error({{"do", "mains"}, {"station", "saw"}, {"on", true}}), "the mains are on");
+  good({{"do", "mains"}, {"station", "saw"}, {"on", false}});
+  EXPECT_EQ(error({{"do", "mains"}, {"station", "saw"}, {"on", false}}), "the mains are off");
+  step(4'000);
+  EXPECT_EQ(saw()["mains"], false);
+  EXPECT_EQ(saw()["powered"], true) << "its 24 V stay";
+  EXPECT_EQ(saw()["dc_link"], 0);
+  EXPECT_EQ(saw()["state"], "not ready");
+  good({{"do", "mains"}, {"station", "saw"}, {"on", true}});
+  step(200);
+  EXPECT_EQ(saw()["dc_link"], 560);
+  EXPECT_NE(saw()["state"], "not ready");
+  const std::string journal = topic({{"topic", "journal"}}).dump();
+  for (const char* told : {"the mains are off", "the mains are back"}) EXPECT_NE(journal.find(told), std::string::npos) << journal;
+}
+
+// AO1 shows the speed as delivered; with P642 = 2 it is a current. At standstill both are 0.
+TEST_F(Serving, AnalogOutputsAreShownAsTheyAreWired) {
+  const Json described = good({{"do", "plant"}})["plant"]["stations"][0]["analog_outputs"];
+  ASSERT_EQ(described.size(), 2U) << described;
+  EXPECT_EQ(described[0]["name"], "AO1");
+  EXPECT_EQ(described[0]["function"], "ACTUAL SPEED");
+  step(5);
+  EXPECT_EQ(topic({{"topic", "plant"}})["stations"]["saw"]["analog_outputs"]["AO1"], "0.00 V");
+  good({{"do", "parameters.set"}, {"station", "saw"}, {"number", "P642"}, {"value", "3"}});
+  step(5);
+  EXPECT_EQ(topic({{"topic", "plant"}})["stations"]["saw"]["analog_outputs"]["AO1"], "4.00 mA") << "4 to 20 mA";
+}
+
 TEST_F(Serving, PowerGoesOffAndOn) {
   good({{"do", "power"}, {"station", "saw"}, {"on", false}});
   step(5);

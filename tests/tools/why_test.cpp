@@ -50,6 +50,63 @@ TEST(Why, SaysOnceThatTheMotorIsIdeal) {
   EXPECT_EQ(run_ipos({"run", plant, "--for", "10ms", "--why"}).err.find("the motor is ideal"), std::string::npos);
 }
 
+// A partner that answers in the first 100 ms after power-on: once, and not where the plant says how long a unit takes.
+TEST(Why, SaysOnceThatARealPartnerTakesLonger) {
+  const TemporaryFolder folder;
+  folder.write("A.IPC", R"(#include <constb.h>
+MOVLNK m; MLDATA d;
+main() {
+  m.BusType = 5; m.Address = 2; m.Format = ML_FT_PAR; m.Service = ML_S_RD; m.Index = 8321; m.DPointer = numof(d);
+  _MoviLink(m); _MoviLink(m);
+  while (1) { }
+}
+)");
+  const auto told = [&](const std::string& keys) {
+    const std::string plant = folder.write(
+        "p.toml", "[[bus]]\nname = \"sbus\"\nkind = \"can\"\nbaud = 500000\n[[station]]\nname = \"a\"\nunit = \"mdxb\"\nsbus = "
+                  "\"sbus\"\nprogram = \"A.IPC\"\n" + keys +
+                      "[station.parameters]\nP881 = 1\n[[station]]\nname = \"b\"\nunit = \"mdxb\"\nsbus = \"sbus\"\n"
+                      "[station.parameters]\nP881 = 2\n");
+    const std::string err = run_ipos({"run", plant, "--for", "300ms", "--why"}).err;
+    size_t times = 0;
+    for (size_t at = 0; (at = err.find("a real unit takes longer", at)) != std::string::npos; ++at) ++times;
+    return times;
+  };
+  EXPECT_EQ(told(""), 1U);
+  EXPECT_EQ(told("start_up = \"500ms\"\n"), 0U);
+  // A program that waits for its partner.
+  folder.write("A.IPC", R"(#include <constb.h>
+MOVLNK m; MLDATA d;
+main() {
+  _Wait(150);
+  m.BusType = 5; m.Address = 2; m.Format = ML_FT_PAR; m.Service = ML_S_RD; m.Index = 8321; m.DPointer = numof(d);
+  _MoviLink(m);
+  while (1) { }
+}
+)");
+  EXPECT_EQ(told(""), 0U);
+}
+
+// A step, a stimulus and the station itself take the mains away.
+TEST(Why, SaysThatTheMainsAreMissing) {
+  const TemporaryFolder folder;
+  const std::string station = "[[station]]\nname = \"u1\"\nunit = \"md60a\"\n";
+  const std::string inputs = "[station.inputs]\n" + kEnabled;
+  const auto why = [&](const std::string& text) {
+    return run_ipos({"run", folder.write("p.toml", text), "--for", "4s", "--why"}).err;
+  };
+  constexpr const char* kTold = "not enabled: no mains: the DC link (P008) is too low";
+  EXPECT_EQ(why(station + inputs).find(kTold), std::string::npos);
+  EXPECT_NE(why(station + "mains = \"off\"\n" + inputs).find(kTold), std::string::npos);
+  EXPECT_NE(why(station + inputs + "[[stimulus]]\nstation = \"u1\"\nat = \"1s\"\nmains = \"off\"\n").find(kTold), std::string::npos);
+  folder.write("m.test.toml", station + inputs +
+                                  "[[step]]\nat = \"1s\"\nmains = \"off\"\n[[expect]]\nstate = \"ready\"\nequals = 0\nwithin = \"3s\"\n"
+                                  "[[expect]]\nsignal = \"mains\"\nequals = 0\n[[step]]\nafter = \"1s\"\nmains = \"on\"\n"
+                                  "[[expect]]\nstate = \"ready\"\nequals = 1\nwithin = \"40ms\"\n");
+  const CommandResult tested = run_ipos({"test", "m.test.toml"}, folder.path());
+  EXPECT_EQ(tested.exit_code, 0) << tested.out;
+}
+
 // By a program in its own unit; over buses: tests/runtime/bus_plan/plan_test.cpp and rs485/slave_test.cpp.
 TEST(Why, NamesARefusedWriteOfTheProgram) {
   const TemporaryFolder folder;

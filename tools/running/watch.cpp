@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "compiler/diag/places.hpp"
 #include "runtime/signals/find.hpp"
@@ -29,12 +31,27 @@ WatchRow row_of(const signals::Signal& signal, const std::string& name) {
   return {name, std::nullopt, static_cast<double>(sample) * signal.factor, false, signal.words(sample)};
 }
 
+// Analog outputs that are set otherwise than from the factory: AO1 by P640..P642, AO2 by P643..P645 (1053 1610 p. 79).
+void add_analog_outputs(const runtime::Station& station, std::vector<WatchRow>& rows) {
+  const stdlib::ParameterTable& table = stdlib::parameter_table(*station.config().unit);
+  const std::pair<const char*, std::array<const char*, 3>> outputs[] = {{"AO1", {"640", "641", "642"}},
+                                                                        {"AO2", {"643", "644", "645"}}};
+  for (const auto& [name, numbers] : outputs)
+    if (std::any_of(numbers.begin(), numbers.end(), [&](const char* number) {
+          const stdlib::Parameter* row = table.find(number);
+          return row != nullptr && station.read(row->index) != row->default_value;
+        }))
+      for (const signals::Signal& signal : signals::find_station_signals(station, name)) rows.push_back(row_of(signal, name));
+}
+
 }  // namespace
 
 std::vector<WatchRow> watch_rows(const runtime::Station& station, const std::vector<std::string>& names) {
   std::vector<WatchRow> rows;
-  if (names.empty())
+  if (names.empty()) {
     for (const vm::Symbol& symbol : station.symbols()) add(station, signals::elements_of(symbol), rows);
+    add_analog_outputs(station, rows);
+  }
   for (std::string name : names) {
     // "u.H200" is of the station u only.
     if (const std::string own = station.config().name + "."; name.starts_with(own)) name.erase(0, own.size());

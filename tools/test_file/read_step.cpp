@@ -143,6 +143,7 @@ const std::vector<Action> kActions = {
     {"analog", {"station", "set", "force", "pulse", "release", "for", "every", "times"}, read_signal},
     {"switch", {"station", "set"}, read_signal},
     {"signal", {"station", "set", "force", "pulse", "release", "for", "every", "times"}, read_signal},
+    {"mains", {"station"}, read_signal},
     {"process_data", {"station", "set", "force", "release"}, read_process_data},
     {"send", {"bus"}, read_send},
     {"await", {"bus", "within"}, read_awaited},

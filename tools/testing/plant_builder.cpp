@@ -65,7 +65,7 @@ std::optional<vm::Image> load(const TestCase& test, runtime::StationConfig& stat
 BuiltPlant build_plant(const TestCase& test, Programs& programs, const RunOptions& options) {
   BuiltPlant built;
   runtime::PlantFile file = test.plant;
-  for (runtime::FaultConfig& fault : file.faults) fault.fault.seed += options.seed;
+  runtime::move_seeds(file, options.seed);
   std::vector<std::optional<vm::Image>> images;
   bool complete = true;
   for (runtime::StationConfig& station : file.stations) {

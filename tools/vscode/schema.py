@@ -23,7 +23,8 @@ STATION = '[[station]]\nname = "s"\nunit = "md60a"\n'
 CAMPAIGN_PLANT = "of_campaign.toml"
 # Of texts that no probe is: "2 %", "1..100", "1s". The last two a fault has in a campaign only, beside what its reader knows.
 CAMPAIGN_KEYS = {"band": {"type": ["number", "string"]}, "seeds": {"type": ["array", "string"]}, "at": {"type": ["array", "string"]}}
-SIGNALS = {"variable": "H0", "parameter": "P130", "input": "DI00", "analog": "AI1", "switch": "fms_switch", "signal": "load_torque"}
+SIGNALS = {"variable": "H0", "parameter": "P130", "input": "DI00", "analog": "AI1", "switch": "fms_switch", "signal": "load_torque",
+           "mains": "off"}
 
 
 class Reader:

@@ -173,6 +173,23 @@ test("a click turns an axis", { skip }, () =>
   }),
 );
 
+// AO1 is the actual speed as delivered, 10 V are 3000 rpm (ours).
+test("an analog output and the mains", { skip }, () =>
+  meet(async (page) => {
+    await button(page, "Run").click();
+    await enable(page);
+    const output = page.getByRole("status", { name: "belt AO1" });
+    await until(async () => (await output.textContent()) === "0.50 V", "AO1 does not show 150 rpm");
+    assert.strictEqual(await button(page, "Mains belt").getAttribute("aria-pressed"), "true");
+    await button(page, "Mains belt").click();
+    await until(async () => (await card(page, "belt").textContent()).includes("Not enabled: no mains"), "the drive goes on without mains");
+    assert.strictEqual(await button(page, "Mains belt").getAttribute("aria-pressed"), "false");
+    assert.strictEqual(await button(page, "Power belt").getAttribute("aria-pressed"), "true", "its 24 V stay");
+    await button(page, "Mains belt").click();
+    await until(async () => (await output.textContent()) === "0.50 V", "it does not start again");
+  }),
+);
+
 test("a fault triggers the scope, is named, and can be reset", { skip }, () =>
   meet(async (page) => {
     await tab(page, "Scope");

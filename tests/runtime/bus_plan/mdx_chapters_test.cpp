@@ -95,6 +95,42 @@ TEST(MdxChapters, StatesAndFaultsInStatusWord1) {
   EXPECT_EQ(rig.station(0).fault(), 43);
 }
 
+// Control word 2 and status words 2 and 3 have in their low bytes what MOVITRAC 07 prints of the first ones; of the rest the
+// journal says that no manual read prints it.
+TEST(MdxChapters, ControlAndStatusWordsOfTheProfile) {
+  PROVES("MDB-TOC-25");
+  for (const auto& [control, status] : {std::pair(9, 6), {10, 7}, {10, 11}}) {
+    SCOPED_TRACE(status);
+    PlantRig rig(serial_line("a", 9600) + "[[station]]\nname = \"b\"\nunit = \"mdxb\"\nrs485 = \"a\"\n" +
+                 "[station.parameters]\nP100 = 2\nP101 = 1\nP810 = 1\nP301 = 0\nP870 = " + std::to_string(control) +
+                 "\nP871 = 1\nP873 = " + std::to_string(status) + "\nP874 = 1\n" + kEnabled);
+    Bus& line = *rig.get().find_bus("a");
+    line.attach_hand();
+    const auto send = [&](const std::string& words, int ms = 100) {
+      EXPECT_EQ(line.send("02 01 03 " + words + " bcc"), std::nullopt);
+      rig.run_until(rig.get().now() + ms * kMillisecond);
+      return rig.station(0).drive().value("097") & 0xFF;
+    };
+    const auto rpm = [&] { return std::as_const(rig.station(0)).drive().value("000") / 1'000.0; };
+    EXPECT_EQ(send("00 00 00 00"), 0x06) << "rapid stop: ready, process data enabled";
+    EXPECT_EQ(send("00 06 13 88", 2'000), 0x07) << "enable";
+    EXPECT_NEAR(rpm(), 1'000, 1);
+    send("00 04 13 88", 3'000);
+    EXPECT_EQ(rpm(), 0) << "rapid stop";
+    send("00 06 13 88", 2'000);
+    EXPECT_NEAR(rpm(), 1'000, 1);
+    send("00 02 13 88", 3'000);
+    EXPECT_EQ(rpm(), 0) << "stop";
+    EXPECT_EQ(send("00 01 13 88"), 0x06) << "controller inhibit";
+    rig.station(0).drive().state().raise_fault(26);
+    EXPECT_EQ(send("00 00 00 00"), 0x24) << "fault, not ready";
+    EXPECT_EQ(send("00 40 00 00"), 0x06) << "reset";
+    EXPECT_EQ(rig.says("no manual read prints the bits of control word 2"), control == 10 ? 1U : 0U);
+    EXPECT_EQ(rig.says("no manual read prints the bits of status word 2"), status == 7 ? 1U : 0U);
+    EXPECT_EQ(rig.says("no manual read prints the bits of status word 3"), status == 11 ? 1U : 0U);
+  }
+}
+
 // P130 (8470 = 2116h) is written: each service is a write of the EEPROM.
 TEST(MdxChapters, CyclicChannelRunsOncePerToggle) {
   PROVES("MDB-TOC-27");

@@ -2,6 +2,8 @@
 // from 0 to 1500 rpm with rated torque, 30 rpm a millisecond, and needs 80 % of IN for that torque.
 #include <array>
 
+#include <cmath>
+
 #include "tests/runtime/drive/drive_rig.hpp"
 
 namespace ipos::tests {
@@ -168,6 +170,32 @@ TEST(Torque, SlaveFreeRun) {
     rig.run_ms(100);
     EXPECT_FALSE(rig.drive.verdict().command == runtime::Command::Enable) << "and its control word";
   }
+}
+
+// P304 bounds the active current in CFC and SERVO: 40 % of IN are half of the rated torque of a motor with 80 %, so 3 of the
+// 6 rpm a millisecond that it makes of the shaft; the output current is that and the magnetizing current of 60 %.
+TEST(TorqueLimit, BoundsTheActiveCurrent) {
+  MachineData machine = light_machine();
+  machine.inertia = 400;
+  for (const int mode : {0, 5, 11, 13, 16, 18})
+    for (const int limit : {0, 40'000, 100'000, 150'000}) {
+      SCOPED_TRACE(mode);
+      DriveRig rig("md60a", {}, machine);
+      rig.set("P700", mode);
+      rig.set("P304", limit);
+      rig.set("P130", 0);
+      rig.set("P160", 1'400'000);
+      rig.enable_terminals();
+      rig.input("DI04", true);
+      rig.run_ms(1);
+      const double before = rig.rpm();
+      rig.run_ms(50);
+      const double current_limit = 150, most = std::sqrt(current_limit * current_limit - 60 * 60);
+      const bool acts = mode >= 11 && limit != 0;
+      const double active = std::min(most, acts ? limit / 1e3 : most);
+      EXPECT_NEAR((rig.rpm() - before) / 50, active / 80 * 6, 0.006);
+      EXPECT_NEAR(rig.drive.axis().output_current, 1e3 * std::hypot(active, 60), 3);
+    }
 }
 
 }  // namespace

@@ -127,6 +127,12 @@ TEST(Why, EveryBlockOccurs) {
          rig.set("P720", 1);
          rig.po({0x0006, 100, 0});
        }},
+      {Block::NoMains, "md60a",
+       [](DriveRig& rig) {
+         rig.drive.set_mains(false);
+         rig.run_ms(400);
+       }},
+      {Block::MainsOff, "md60a", [](DriveRig& rig) { rig.set("P604", 21); }},
       {Block::LimitCw, "md60a", [](DriveRig& rig) { rig.set("P604", 14); }},
       {Block::LimitCcw, "md60a",
        [](DriveRig& rig) {
@@ -214,6 +220,7 @@ bool can_come(const stdlib::UnitType& unit, Block block) {
     case Block::MasterInhibit:
     case Block::MasterRapidStop:
     case Block::MasterStop:
+    case Block::MainsOff:
     case Block::MasterHold: return movidrive;
     case Block::PoDisabled:
     case Block::StopFunction: return unit.family != Family::Movitrac31;

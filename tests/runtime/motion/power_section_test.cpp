@@ -117,6 +117,82 @@ TEST(PowerSection, BrakingResistorHoldsTheDcLink) {
   EXPECT_EQ(most, 780'000);
 }
 
+// Without mains the square of the voltage falls by what is taken: 100 V² a millisecond for the standby of 1 % alone, from
+// 560 V to nothing in 3136 ms; nothing counts as drawn from the mains.
+TEST(PowerSection, WithoutMainsTheDcLinkFallsByWhatIsTaken) {
+  Axis axis{{}};
+  run(axis, {}, 100);
+  axis.set_mains(false);
+  for (int ms = 0; ms < 3'200; ms += 100) {
+    EXPECT_NEAR(axis.state().dc_link, 1'000 * std::sqrt(std::max(0.0, 313'600 - 100.0 * ms)), 30) << ms;
+    run(axis, {}, 100);
+  }
+  EXPECT_EQ(axis.state().dc_link, 0);
+  EXPECT_EQ(axis.state().energy, 0);
+}
+
+// Half the rated torque at rated speed, 50 % of the rated power: with losses of 20 % at IN and the standby.
+TEST(PowerSection, WithoutMainsALoadTakesItsPowerFromTheDcLink) {
+  Axis axis{{}};
+  AxisOrder order = order_of(AxisCommand::Run, 1'500'000, 2'000);
+  order.load_torque = 45'000;
+  run(axis, order, 3'000);
+  const int64_t drawn = axis.state().energy;
+  axis.set_mains(false);
+  const double power = 0.5 + 0.2 * (0.4 * 0.4 + 0.6 * 0.6) + 0.01;
+  for (int ms = 1; ms <= 40; ++ms) {
+    run(axis, order, 1);
+    ASSERT_NEAR(axis.state().dc_link, 1'000 * std::sqrt(313'600 - power * 10'000 * ms), 30) << ms;
+  }
+  EXPECT_EQ(axis.state().energy, drawn);
+}
+
+// What a stop gives back goes into the DC link, and no mains hold it: the sum of n ms of (torque x speed) less losses.
+TEST(PowerSection, WithoutMainsAStopFeedsTheDcLink) {
+  Axis axis{{}};
+  run(axis, order_of(AxisCommand::Run, 1'500'000, 1'000), 2'000);
+  axis.set_mains(false);
+  const AxisOrder stop = order_of(AxisCommand::Stop, 0, 1'500);  // 2 rpm a millisecond: a third of the torque, friction helps
+  const double torque = -(1 / 3.0 - 0.05), current = std::hypot(torque * 0.8, 0.6);
+  double square = 313'600;
+  for (int n = 1; n <= 700; ++n) {
+    const AxisState& state = axis.tick(stop);
+    const double power = torque * (1'500 - 2.0 * n) / 1'500 + 0.2 * current * current + 0.01;
+    square = std::min(square - power * 10'000, 780.0 * 780.0);
+    ASSERT_NEAR(state.dc_link, 1'000 * std::sqrt(square), 100) << n;
+  }
+}
+
+// A hundredth of the energy at mains a millisecond, ours.
+TEST(PowerSection, WhenTheMainsComeBackTheDcLinkIsCharged) {
+  for (const double from : {0.0, 0.5}) {
+    Axis axis{{}};
+    axis.set_mains(false);
+    if (from == 0) axis.empty_dc_link();
+    while (axis.state().dc_link > 560'000 * std::sqrt(from)) run(axis, {}, 1);
+    const double square = std::pow(axis.state().dc_link / 1'000.0, 2);
+    axis.set_mains(true);
+    for (int ms = 1; ms <= 110; ++ms) {
+      run(axis, {}, 1);
+      ASSERT_NEAR(axis.state().dc_link, 1'000 * std::sqrt(std::min(313'600.0, square + 3'136.0 * ms)), 30) << ms;
+    }
+    EXPECT_EQ(axis.state().dc_link, 560'000);
+  }
+}
+
+// Many milliseconds at once are the same as one after the other.
+TEST(PowerSection, WithoutMainsMillisecondsAreLeftOutOnlyWhereNothingChanges) {
+  Axis axis{{}}, other{{}};
+  for (Axis* one : {&axis, &other}) {
+    one->set_mains(false);
+    one->empty_dc_link();
+    run(*one, {}, 5);
+  }
+  axis.advance(10'000);
+  run(other, {}, 10'000);
+  EXPECT_TRUE(axis == other);
+}
+
 TEST(PowerSection, EnergyIsPowerTimesTime) {
   Axis axis{{}};
   AxisOrder order = order_of(AxisCommand::Run, 1'500'000, 2'000);

@@ -281,6 +281,106 @@ TEST(Encoder, AStepIsTheClosedForm) {
   }
 }
 
+// The loop of the plate machine with four rotors of load, in rpm and ms: p of the proportional part, q of the integral part.
+struct Loop {
+  explicit Loop(const ControlOrder& control) {
+    const double per_ms = kTorque / (0.0034 * 5) * 60 / (2 * kPi) / 1e3;  // rpm, by rated torque
+    p = control.gain / 1e3 / 30 * per_ms;
+    q = p * 1e3 / control.time_us;
+  }
+  double p, q;
+};
+
+// When a ramp of A rpm a millisecond begins, a loop with p² > 4 q lags by A (e^-r1 t - e^-r2 t) / (r2 - r1); P202 gives its
+// share beforehand. The setpoint goes in steps, in the mean half of one ahead of the ramp, and the loop follows that, too.
+TEST(Encoder, PrecontrolTakesTheLagOfARamp) {
+  for (const double share : {0.0, 0.5, 1.0, 1.5}) {
+    SCOPED_TRACE(share);
+    Axis axis(plate_machine());
+    AxisOrder order = ramp_to(0, 2'000);
+    order.control.encoder = true;
+    order.control.gain = 500;
+    order.control.time_us = 100'000;
+    order.control.precontrol = static_cast<int32_t>(share * 1e3);
+    after(axis, order, 10);
+    order.target = 1'200'000;
+    constexpr double kRise = 1.5;  // of 3000 rpm in 2 s
+    const Loop loop(order.control);
+    const double root = std::sqrt(loop.p * loop.p / 4 - loop.q), r1 = loop.p / 2 - root, r2 = loop.p / 2 + root;
+    for (int n = 1; n <= 300; ++n) {
+      const double lag = (std::exp(-r1 * n) - std::exp(-r2 * n)) / (r2 - r1);
+      const double c = (loop.p - r2) / (r2 - r1), step = 1 + c * std::exp(-r1 * n) - (1 + c) * std::exp(-r2 * n);
+      const AxisState& state = after(axis, order, 1);
+      ASSERT_NEAR((state.setpoint - state.speed) / 1e3, (1 - share) * kRise * lag - kRise / 2 * step, 0.05) << n;
+    }
+  }
+}
+
+// The same equations in steps of a microsecond: v' = p (s - m) + i + u, i' = q (s - m), m' = (v - m) / P204,
+// u' = (P202 s' - u) / P203.
+TEST(Encoder, FiltersAreFirstOrder) {
+  struct Row {
+    int32_t precontrol, precontrol_us, filter_us;
+  };
+  for (const Row& row : {Row{0, 0, 1'000}, Row{0, 0, 4'000}, Row{0, 0, 10'000}, Row{1'000, 20'000, 0}, Row{800, 5'000, 3'000}})
+    for (const bool ramp : {false, true}) {
+      SCOPED_TRACE(row.filter_us);
+      Axis axis(plate_machine());
+      AxisOrder order = ramp_to(0);
+      order.command = AxisCommand::Follow;
+      order.control.encoder = true;
+      order.control.gain = 1'000;
+      order.control.time_us = 40'000;
+      order.control.precontrol = ramp ? row.precontrol : 0;
+      order.control.precontrol_us = row.precontrol_us;
+      order.control.filter_us = row.filter_us;
+      after(axis, order, 10);
+      const Loop loop(order.control);
+      constexpr int kParts = 1'000;
+      double v = 0, m = 0, i = 0, u = 0, before = 0;
+      for (int n = 1; n <= 150; ++n) {
+        const double s = ramp ? n * 1.0 : 10;
+        order.target = static_cast<int32_t>(s * 1e3);
+        const double wanted = order.control.precontrol / 1e3 * (s - before);
+        before = s;
+        for (int part = 0; part < kParts; ++part) {
+          const double seen = row.filter_us == 0 ? v : m, at = v;
+          v += (loop.p * (s - seen) + i + u) / kParts;
+          i += loop.q * (s - seen) / kParts;
+          if (row.filter_us != 0) m += (at - m) / (row.filter_us / 1e3) / kParts;
+          u = row.precontrol_us == 0 ? wanted : u + (wanted - u) / (row.precontrol_us / 1e3) / kParts;
+        }
+        ASSERT_NEAR(after(axis, order, 1).speed / 1e3, v, 0.05) << n;
+      }
+    }
+}
+
+TEST(Encoder, LoadPrecontrolHoldsAtTheStart) {
+  const auto sag = [](int32_t percent_of_load) {
+    const MachineData m = plate_machine();
+    Axis axis(m);
+    AxisOrder order = ramp_to(0);
+    order.control.encoder = true;
+    order.control.time_us = 40'000;
+    order.control.load_precontrol = m.rated_active_current / 2 * percent_of_load / 100;
+    order.load_torque = 50'000;
+    order.premagnetize_ms = 50;
+    int32_t least = 0;
+    for (int n = 0; n < 500; ++n) least = std::min(least, after(axis, order, 1).speed);
+    return -least;
+  };
+  // By a step of load a loop with p² > 4 q sags by A (e^-r1 t - e^-r2 t) / (r2 - r1) at most, A half of the rated torque.
+  ControlOrder control;
+  control.time_us = 40'000;
+  const Loop loop(control);
+  const double root = std::sqrt(loop.p * loop.p / 4 - loop.q), r1 = loop.p / 2 - root, r2 = loop.p / 2 + root;
+  const double at = std::log(r2 / r1) / (r2 - r1), rated = kTorque / (0.0034 * 5) * 60 / (2 * kPi) / 1e3;
+  const double most = 0.5 * rated * (std::exp(-r1 * at) - std::exp(-r2 * at)) / (r2 - r1) * 1e3;
+  EXPECT_NEAR(sag(0), most, most * 0.05);
+  EXPECT_NEAR(sag(50), most / 2, most * 0.05);
+  EXPECT_LT(sag(100), most * 0.01);
+}
+
 TEST(Encoder, ALoadSagsAndComesBack) {
   Axis axis(plate_machine());
   AxisOrder order = ramp_to(1'000'000, 500);

@@ -1,7 +1,11 @@
 // Keys `firmware` and `start_up` of a station: what they refuse, and what the unit shows and accepts.
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 #include "runtime/plant/plant.hpp"
+#include "tests/harness/proves.hpp"
+#include "tests/harness/reach.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -35,6 +39,31 @@ TEST(Firmware, HasTwoDigits) {
     ASSERT_EQ(errors.size(), 1U) << value;
     EXPECT_EQ(errors[0].place.line, 4U);
     EXPECT_NE(errors[0].text.find("firmware"), std::string::npos) << errors[0].text;
+  }
+}
+
+// Unit type, rated current and firmware are read only, and those of the owner's unit.
+TEST(UnitData, AreTheOwnersAndReadOnly) {
+  tests::goes_through(tests::kPlantFile);
+  PROVES("M07-PAR-23");
+  for (const auto& [keys, type, current, version] :
+       {std::tuple("", 0, 4'000, 16),
+        {"firmware = 15\n[station.unit_rating]\ncurrent = '3.2 A'\ntype_code = 37\n", 37, 3'200, 15}}) {
+    PlantFileResult result = read_plant_file(std::string("[[station]]\nname = 'u'\nunit = 'mc07'\n") + keys);
+    ASSERT_TRUE(result.errors.empty());
+    std::vector<PlantError> errors;
+    Plant plant(std::move(result.plant), {std::nullopt}, std::nullopt, errors);
+    plant.run_until(10 * kMillisecond);
+    UnitInterface& unit = plant.stations()[0]->drive();
+    EXPECT_EQ(unit.value("070"), type);
+    EXPECT_EQ(unit.value("071"), current);
+    EXPECT_EQ(unit.value("076") % 100, version);
+    EXPECT_GT(unit.value("076"), 800'000'000) << "a part number before it";
+    for (const uint16_t index : {8'300, 8'301, 8'361}) {
+      const auto reply = unit.parameters().execute(ParameterService::Write, index, 1);
+      ASSERT_FALSE(reply.has_value()) << index;
+      EXPECT_EQ(reply.error().additional, 0x12) << "read access only";
+    }
   }
 }
 

@@ -87,7 +87,8 @@ TEST(StationMotor, MistakesHaveTheirPlace) {
           {"[station.motor]\ntype = 'DT90L4'\npower = ^'2.2 kW'\n", "power is more than voltage, current and cos_phi bring"},
           {"[station.motor]\ntype = 'DT90L4'\ncos_phi = ^1\n", "cos_phi must be a number, 0.1 to 0.99"},
           {"[station.unit_rating]\ncurrent = ^4\n", "current must be a text with its unit"},
-          {"[station.unit_rating]\n^type = 1\n", "unknown key 'type' in [station.unit_rating]; known are power, current"},
+          {"[station.unit_rating]\n^type = 1\n", "unknown key 'type' in [station.unit_rating]; known are power, current, type_code"},
+          {"[station.unit_rating]\ntype_code = ^-1\n", "type_code is 0 to"},
           {"control = ^'good'\n", "unknown control 'good'; known are ideal, real"},
           {"control = ^1\n", "control must be a text in quotes"},
           {"noise = ^'20 %'\n", "noise is 0 to 10 %"},
@@ -205,6 +206,27 @@ TEST(OwnersMachine, NoiseIsOfTheSeedAndWithinItsBound) {
   EXPECT_GT(std::set<int32_t>(noisy.begin(), noisy.end()).size(), 250U);
   EXPECT_LT(std::abs(mean), 400);
   EXPECT_EQ(speeds(""), std::vector<int32_t>(300, 1'000'000));
+}
+
+// The plant's seed moves all that goes by chance; without it, and with 0, the station's name alone is the seed.
+TEST(OwnersMachine, ASeedGivesAnotherCourse) {
+  const auto seeds = [](const std::string& head) {
+    const PlantFile plant = read_plant(head + "[[bus]]\nname = 'b'\nkind = 'can'\n" + kUnit +
+                                       "noise = '0.2 %'\nsbus = 'b'\n[[fault]]\nbus = 'b'\nkind = 'drop'\nrate = 10\nseed = 5\n");
+    return std::pair(plant.stations.front().machine.noise_seed, plant.faults.front().fault.seed);
+  };
+  const auto plain = seeds("");
+  EXPECT_EQ(plain.second, 5U);
+  EXPECT_EQ(seeds("seed = 0\n"), plain);
+  std::set<uint32_t> noise;
+  for (int n = 0; n < 100; ++n) {
+    const auto [of_noise, of_fault] = seeds("seed = " + std::to_string(n) + "\n");
+    noise.insert(of_noise);
+    EXPECT_EQ(of_fault, 5U + static_cast<uint64_t>(n));
+  }
+  EXPECT_EQ(noise.size(), 100U);
+  EXPECT_EQ(read_plant_file("seed = -1\n" + kUnit).errors.size(), 1U);
+  EXPECT_EQ(read_plant_file("seed = 'a'\n" + kUnit).errors.size(), 1U);
 }
 
 }  // namespace

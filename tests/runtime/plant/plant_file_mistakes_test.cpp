@@ -31,7 +31,7 @@ TEST(PlantFileMistakes, OfTheForms) {
   expect_mistakes("",
                   {{"^car = 1\n",
                     "unknown key 'car' in the plant; known are bus, station, control, fault, "
-                    "stimulus, wire, switch, machine, expect"},
+                    "stimulus, wire, switch, machine, seed, expect"},
                    {"bus = ^5\n", "write [[bus]], one for each"},
                    {"bus = [ ^5 ]\n", "write [[bus]], one for each"},
                    {"^[bus]\nname = 'b'\nkind = 'can'\n", "write [[bus]], one for each"},

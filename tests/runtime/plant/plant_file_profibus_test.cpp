@@ -247,6 +247,9 @@ TEST(PlantFileProfibus, MistakesOfAMaster) {
           {"^[[control.command]]\nat = '1s'\n", "a [[control.command]] needs command"},
           {"^[[control.command]]\ncommand = 'stop'\n", "a [[control.command]] needs at"},
           {"[[control.command]]\nat = '1s'\ncommand = 'stop'\ngroups = ^256\n", "groups is 0 to 255"},
+          {"[[control.command]]\nat = '1s'\ncommand = 'stop'\naddress = ^8\n", "only activate and deactivate are of one slave"},
+          {"^[[control.command]]\nat = '1s'\ncommand = 'activate'\n", "needs address"},
+          {"[[control.command]]\nat = '1s'\ncommand = 'deactivate'\naddress = ^77\n", "the master has no slave 77"},
           {"[[control.command]]\nat = '1s'\ncommand = 'stop'\n^slave = 8\n", "unknown key 'slave'"},
       });
   const std::string begin = "^[[control.slave]]\naddress = 8\n";

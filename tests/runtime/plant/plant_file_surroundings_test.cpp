@@ -41,6 +41,9 @@ TEST(PlantFileSurroundings, StimuliOfEverySignal) {
       {"analog = 'AI2'\nset = '-1 V'\n", Kind::Input, "AI2", 18, -1'000},
       {"analog = 'frequency'\nset = '5 kHz'\n", Kind::Input, "frequency", 20, 5'000},
       {"analog = 'potentiometer'\nset = '5 %'\n", Kind::Input, "potentiometer", 21, 50},
+      {"switch = 'mains'\nset = 0\n", Kind::Switch, "mains", 0, 0},
+      {"mains = 'off'\n", Kind::Switch, "mains", 0, 0},
+      {"mains = 'on'\n", Kind::Switch, "mains", 0, 1},
   };
   for (const auto& row : rows) {
     const Stimulus found = first_stimulus(row.text);
@@ -76,6 +79,10 @@ TEST(PlantFileSurroundings, MistakesOfStimuli) {
                       {"variable = 'x'\nset = ^'1'\n", "set must be a whole number"},
                       {"variable = 'x'\npulse = ^1.5\nfor = '1ms'\n", "pulse must be a whole number"},
                       {"variable = ^5\nset = 1\n", "variable must be a text in quotes"},
+                      {"mains = ^0\n", "mains must be a text in quotes"},
+                      {"mains = ^'up'\n", "unknown mains 'up'; known are off, on"},
+                      {"mains = 'off'\nset = ^1\n", "a [[stimulus]] has either mains or set"},
+                      {"mains = 'off'\nswitch = ^'s13'\n", "a [[stimulus]] has either"},
                       {"parameter = 'P130'\nset = ^'1 rpm'\n", "P130"},
                       {"parameter = 'P130'\nset = ^true\n", "P130 must be a whole number"},
                       {"input = ^'DI18'\nset = 1\n", "'DI18' is no input"},

@@ -47,6 +47,16 @@ std::vector<std::string> lines_of(const runtime::StationConfig& config) {
   return lines;
 }
 
+// AO1 and AO2 with the functions that P640 and P643 give them.
+Json analog_outputs(const Station& station) {
+  Json outputs = Json::array();
+  const stdlib::ParameterTable& table = stdlib::parameter_table(*station.config().unit);
+  for (const auto& [name, number] : {std::pair("AO1", "640"), std::pair("AO2", "643")})
+    if (const stdlib::Parameter* row = table.find(number))
+      outputs.push_back({{"name", name}, {"function", stdlib::parameter_text(*row, station.read(row->index))}});
+  return outputs;
+}
+
 class PlantTab final : public Tab {
  public:
   explicit PlantTab(PlantHost& host) : host_(host) {
@@ -67,6 +77,7 @@ class PlantTab final : public Tab {
       host_.station(Arguments(action).text("station")).drive().state().reset_fault();
     });
     add("power", {"station", "on"}, [this](const Json& action) { power(Arguments(action)); });
+    add("mains", {"station", "on"}, [this](const Json& action) { mains(Arguments(action)); });
     add("fault", {"bus", "kind", "station", "on", "rate", "identifier"},
         [this](const Json& action) { faults_.carry_out(Arguments(action)); });
   }
@@ -146,6 +157,13 @@ class PlantTab final : public Tab {
     plant.surroundings().act(plant.now(), [&plant, name, on] { plant.set_power(name, on); });
   }
 
+  void mains(const Arguments& a) {
+    Station& station = host_.station(a.text("station"));
+    const bool on = a.flag("on");
+    if ((station.switch_value(runtime::StationSwitch::Mains) != 0) == on) throw Mistake(on ? "the mains are on" : "the mains are off");
+    succeed(station.set_switch(runtime::StationSwitch::Mains, on ? 1 : 0));
+  }
+
   // --- what it is ---
 
   Json describe() const {
@@ -212,9 +230,11 @@ class PlantTab final : public Tab {
             {"title", config.unit->title},
             {"program", config.program},
             {"drive", true},
+            {"ideal_motor", !config.options.own_motor},
             {"inputs", terminals(station, runtime::binary_inputs(), "/CONTROL.INHIBIT", used)},
             {"outputs", terminals(station, runtime::binary_outputs(), "/BRAKE", used)},
             {"analog", std::move(analog)},
+            {"analog_outputs", analog_outputs(station)},
             {"lines", lines_of(config)}};
   }
 
@@ -228,6 +248,7 @@ class PlantTab final : public Tab {
             {"inputs", Json::array()},
             {"outputs", Json::array()},
             {"analog", Json::array()},
+            {"analog_outputs", Json::array()},
             {"lines", gateway.lines()}};
   }
 

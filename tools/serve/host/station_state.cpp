@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include "runtime/plant_file/signal.hpp"
+#include "runtime/signals/drive_values.hpp"
+#include "runtime/signals/find.hpp"
 #include "stdlib/faults.hpp"
 #include "tools/serve/host/machine_picture.hpp"
 #include "tools/serve/host/station_order.hpp"
@@ -27,6 +29,19 @@ Json analog_texts(const Station& station) {
     const int32_t value = station.inputs().line(runtime::line_of(kind)).value();
     if (kind.is_of(*station.config().unit) && (value != 0 || !texts.contains(name)))
       texts[name] = fmt::format("{:.3f} {}", value / kind.factor, kind.unit);
+  }
+  return texts;
+}
+
+// As it is wired: in V, or in mA where its mode is a current (P642, P645).
+Json analog_output_texts(const Station& station) {
+  Json texts = Json::object();
+  for (const auto& [name, mode] : {std::pair("AO1", "642"), std::pair("AO2", "645")}) {
+    if (!signals::has_drive_value(*station.config().unit, name)) continue;
+    const bool current = std::as_const(station).drive().value(mode) >= 2;
+    const std::string signal = current ? std::string(name) + "_current" : name;
+    for (const signals::Signal& one : signals::find_station_signals(station, signal))
+      texts[name] = fmt::format("{:.2f} {}", static_cast<double>(one.read()) * one.factor, one.unit);
   }
   return texts;
 }
@@ -81,6 +96,8 @@ Json station_state(const runtime::Plant& plant, const Station& station) {
   json["forced"] = forced;
   json["out"] = station.outputs();
   json["analog"] = analog_texts(station);
+  json["analog_outputs"] = analog_output_texts(station);
+  json["mains"] = station.switch_value(runtime::StationSwitch::Mains) != 0;
   const runtime::Drive& drive = station.drive().state();
   const runtime::AxisState& axis = drive.axis();
   const bool powered = station.powered();

@@ -53,6 +53,10 @@ std::string power(const Plant&, const Arguments& a) {
   return station_row(a) + toml_row("power", a.flag("on") ? "on" : "off");
 }
 
+std::string mains(const Plant&, const Arguments& a) {
+  return station_row(a) + toml_row("mains", a.flag("on") ? "on" : "off");
+}
+
 std::string line_fault(const Plant& plant, const Arguments& a) {
   const std::string kind = a.text("kind");
   std::string keys = fmt::format("bus = {}, kind = {}", toml_text(a.text("bus")), toml_text(kind));
@@ -146,7 +150,7 @@ constexpr Words kWords[] = {
     {"fault", line_fault},    {"bus.send", bus_send},
     {"force", force},         {"release", release},
     {"parameters.set", parameters_set}, {"parameters.load", parameters_load},
-    {"load", load},
+    {"load", load},           {"mains", mains},
 };
 
 }  // namespace

@@ -33,6 +33,7 @@ std::string click_text(const Json& action) {
   const auto text = [&](const char* key) { return action.contains(key) ? action[key].get<std::string>() : std::string(); };
   const auto on = [&](const char* yes, const char* no) { return action.value("on", false) ? yes : no; };
   if (act == "power") return on("power on", "power off");
+  if (act == "mains") return on("mains on", "mains off");
   if (act == "reset") return "fault reset";
   if (act == "fault") return fmt::format("{}{}", text("kind"), on("", " ends"));
   if (act == "parameters.set") return action.contains("number") ? text("number") : fmt::format("parameter {}", action["index"].dump());

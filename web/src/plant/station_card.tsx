@@ -24,6 +24,11 @@ function Face({ station, plant, state }: { station: Station; plant: Plant; state
           {state.position !== undefined && `${state.position} inc`}
           {state.torque !== undefined && ` · ${state.torque.toFixed(0)} % torque`}
         </div>
+        {station.ideal_motor && (
+          <div class="quiet" title='one of 1.5 kW that keeps every speed; [station.motor] and control = "real" of the plant describe yours'>
+            ideal motor
+          </div>
+        )}
       </div>
       {plain && <Machine station={station} plant={plant} />}
     </div>
@@ -61,7 +66,14 @@ function ProcessData({ state }: { state: StationState }) {
   );
 }
 
-function Supply({ name, powered, faults }: { name: string; powered: boolean; faults: boolean }) {
+interface SupplyState {
+  name: string;
+  powered: boolean;
+  mains: boolean | undefined;
+  faults: boolean;
+}
+
+function Supply({ name, powered, mains, faults }: SupplyState) {
   return (
     <footer>
       {faults && (
@@ -69,8 +81,19 @@ function Supply({ name, powered, faults }: { name: string; powered: boolean; fau
           Fault reset
         </button>
       )}
+      {mains !== undefined && (
+        <button
+          class="spread power"
+          aria-label={`Mains ${name}`}
+          aria-pressed={mains}
+          title="the mains alone; the 24 V supply stays"
+          onClick={() => void command({ do: "mains", station: name, on: !mains })}
+        >
+          <span class={`lamp${mains ? " on" : ""}`} /> Mains
+        </button>
+      )}
       <button
-        class="spread power"
+        class={mains === undefined ? "spread power" : "power"}
         aria-label={`Power ${name}`}
         aria-pressed={powered}
         onClick={() => void command({ do: "power", station: name, on: !powered })}
@@ -86,7 +109,7 @@ export function StationCard({ station, plant, close }: { station: Station; plant
   // Most changes are those of a motion: terminals are drawn again only when one of them has changed.
   const terminals = useMemo(
     () => <Terminals station={station} state={state} around={plant} />,
-    [station, plant, state?.in, state?.forced, state?.out, JSON.stringify(state?.analog)],
+    [station, plant, state?.in, state?.forced, state?.out, JSON.stringify([state?.analog, state?.analog_outputs])],
   );
   const kind = machinePicture(station.name).value?.kind ?? "shaft";
   const lamp = !state?.powered ? "" : state.fault ? (state.error === false ? "warning" : "fault") : state.enabled ? "on" : "";
@@ -112,7 +135,7 @@ export function StationCard({ station, plant, close }: { station: Station; plant
       </div>
       {terminals}
       {state && <ProcessData state={state} />}
-      {hello.value?.mode === "plant" && <Supply name={station.name} powered={state?.powered ?? false} faults={!isGateway(station)} />}
+      {hello.value?.mode === "plant" && <Supply name={station.name} powered={state?.powered ?? false} mains={state?.mains} faults={!isGateway(station)} />}
     </section>
   );
 }

@@ -111,6 +111,26 @@ function AnalogInput({ station, analog, text }: { station: string; analog: Analo
   );
 }
 
+function AnalogOutputs({ station, state }: { station: Station; state: StationState | null }) {
+  if (!station.analog_outputs?.length) return null;
+  return (
+    <div class="outputs">
+      {station.analog_outputs.map((output) => (
+        <div class="output-row" key={output.name}>
+          <span class="lamp" />
+          <span class="mono">{output.name}</span>
+          <span class="function" title={output.function}>
+            {output.function}
+          </span>
+          <span role="status" aria-label={`${station.name} ${output.name}`} class="mono">
+            {state?.analog_outputs?.[output.name] ?? ""}
+          </span>
+        </div>
+      ))}
+    </div>
+  );
+}
+
 // Terminals without function that nobody has touched are folded away.
 function isFolded(terminal: Terminal, ...masks: (number | undefined)[]): boolean {
   return terminal.used === false && !masks.some((mask) => bitSet(mask, terminal.bit));
@@ -135,6 +155,7 @@ export function Terminals({ station, state, around }: { station: Station; state:
           ))}
         </div>
       )}
+      <AnalogOutputs station={station} state={state} />
       {idle > 0 && (
         <details class="unused">
           <summary>

@@ -68,9 +68,11 @@ export interface Station {
   title: string;
   program: string;
   drive: boolean;
+  ideal_motor?: boolean; // the plant describes none
   inputs: Terminal[];
   outputs: Terminal[];
   analog: Analog[];
+  analog_outputs?: { name: string; function: string }[];
   lines: string[];
 }
 
@@ -159,7 +161,9 @@ export interface StationState {
   forced: number;
   out: number;
   analog?: Record<string, string>;
+  analog_outputs?: Record<string, string>;
   powered: boolean;
+  mains?: boolean; // without them the unit runs on its 24 V supply; absent: it has none of its own
   state?: string;
   enabled?: boolean;
   ordered?: boolean; // somebody wants it to run

@@ -118,6 +118,28 @@ TEST(CanopenPlant, WhoIsNotGuardedStops) {
   EXPECT_EQ(rig.plant->stations()[0]->fault(), 47);
 }
 
+// "only 24 V backup (no mains)" is one of the three causes of EMCY (page 53 of 11264926); told once, and once when it is gone.
+TEST(CanopenPlant, MissingMainsAreTold) {
+  MasterSettings settings;
+  settings.sync_cycle = 5 * kMillisecond;
+  settings.nodes = {plan(5)};
+  PlantOfNodes rig(station("a", 5, "P730 = 0\n"), settings);
+  rig.run(2 * kSecond);
+  runtime::Station& station = *rig.plant->stations()[0];
+  EXPECT_EQ(station.set_switch(runtime::StationSwitch::Mains, 0), std::nullopt);
+  rig.run(4 * kSecond);
+  ASSERT_EQ(rig.master->report(0).emergencies.size(), 1U);
+  EXPECT_EQ(rig.master->report(0).emergencies[0].code, 0x3100);
+  EXPECT_EQ(rig.speed(0), 0) << "it has run out";
+  EXPECT_EQ(rig.master->report(0).phase, Master::Phase::Running) << "the node lives on";
+  EXPECT_TRUE(rig.says("not enabled: no mains"));
+  EXPECT_EQ(station.set_switch(runtime::StationSwitch::Mains, 1), std::nullopt);
+  rig.run(2 * kSecond);
+  ASSERT_EQ(rig.master->report(0).emergencies.size(), 2U);
+  EXPECT_EQ(rig.master->report(0).emergencies[1].code, 0);
+  EXPECT_EQ(rig.speed(0), 1'000'000);
+}
+
 // The master hears an abort, the user a reason.
 TEST(CanopenPlant, RefusedParametersAreExplained) {
   MasterSettings settings;

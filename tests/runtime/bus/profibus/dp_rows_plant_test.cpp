@@ -52,6 +52,31 @@ TEST(DpRows, OwnBitsOfTheMaster) {
   EXPECT_EQ(after.status[1], before.status[1]);
 }
 
+// A slave that its master takes out of the cycle: bit 7 of octet 2 in the master's view alone.
+TEST(DpRows, ASlaveOutOfTheCycle) {
+  PROVES("DP-DIAG-13");
+  DpPlant bench(kLine + station() +
+                master("watchdog = \"300ms\"\n", "[[control.command]]\nat = \"2s\"\ncommand = \"deactivate\"\naddress = 8\n"
+                                                "[[control.command]]\nat = \"3s\"\ncommand = \"activate\"\naddress = 8\n"));
+  bench.run(2 * kSecond - kMillisecond);
+  EXPECT_TRUE(bench.master().slave(0).exchanging());
+  EXPECT_FALSE(bench.master().slave(0).view().has(diag::kDeactivated));
+  bench.run_on(100 * kMillisecond);
+  const auto exchanges = bench.master().slave(0).exchanges();
+  auto& slave = bench.station().profibus()->card().station().slave();
+  for (int n = 0; n < 8; ++n) {
+    bench.run_on(100 * kMillisecond);
+    EXPECT_TRUE(bench.master().slave(0).view().has(diag::kDeactivated));
+    EXPECT_EQ(encode(bench.master().slave(0).view())[1] & 0x80, 0x80);
+    EXPECT_FALSE(slave.diagnosis(bench.plant->now()).has(diag::kDeactivated));
+    EXPECT_EQ(bench.master().slave(0).exchanges(), exchanges);
+  }
+  EXPECT_EQ(bench.station().fault(), 28) << "the watchdog of the slave has missed its master";
+  bench.run_on(kSecond);
+  EXPECT_TRUE(bench.master().slave(0).exchanging());
+  EXPECT_FALSE(bench.master().slave(0).view().has(diag::kDeactivated));
+}
+
 // A fault and a warning are in the diagnosis, eight octets; without one there are six.
 TEST(DpRows, DiagnosisOfAWarning) {
   PROVES("DP-DIAG-01");
