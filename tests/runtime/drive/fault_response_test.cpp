@@ -81,6 +81,7 @@ const Case kCases[] = {
 };
 
 TEST(FaultResponse, EveryResponseOfEveryFault) {
+  PROVES("DRV-17");
   for (const Case& fault : kCases)
     for (int32_t response = 0; response <= 7; ++response) {
       SCOPED_TRACE(std::string(fault.name) + ", response " + std::to_string(response));
@@ -174,6 +175,7 @@ TEST(FaultResponse, RaisedFromOutside) {
 }
 
 TEST(FaultResponse, MotorOverload) {
+  PROVES("DRV-19");
   for (int32_t response = 0; response <= 7; ++response) {
     // 120 % load make 113 % of the rated current, so 128 % heat in the long run; the motor cools slowly
     // enough for the stop.
@@ -276,6 +278,7 @@ TEST(FaultReset, WithTheCauseStillThereItComesBack) {
 
 // P841, P842. That three attempts are made until somebody resets by hand is ours.
 TEST(FaultReset, AutoReset) {
+  PROVES("DRV-18");
   FaultRig rig;
   rig.set("P841", 1);
   rig.set("P842", 2000);

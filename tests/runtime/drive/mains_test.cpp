@@ -102,6 +102,7 @@ TEST(Mains, WhatWasEnabledGoesOnWhenTheyAreBack) {
 
 // P520: the response comes with the first millisecond after the time, P521 = 0 inhibits.
 TEST(Mains, TheInputInhibitsAfterItsTime) {
+  PROVES("DRV-08");
   for (const char* name : kDrives)
     for (const int32_t time : {0, 1, 120}) {
       SCOPED_TRACE(time);
@@ -133,6 +134,7 @@ TEST(Mains, AShortFailureIsNoReason) {
 
 // P521 = 1: the ramp of P137, 0.5 s for 3000 rpm, so 100 ms from 600 rpm; what it gives back goes into the DC link.
 TEST(Mains, TheInputStopsByTheEmergencyRamp) {
+  PROVES("DRV-08");
   for (const char* name : kDrives) {
     SCOPED_TRACE(name);
     Turning rig(name, 1);

@@ -30,6 +30,7 @@ TEST(MovidriveSetpoint, BipolarAndUnipolar) {
 
 // P112: modes 0, 1, 5, 6 as MOVITRAC 07; 2 to 4 are lines through (P113, P114) and (10 V, maximum), ours.
 TEST(MovidriveSetpoint, ModesOfAi1) {
+  PROVES("DRV-11");
   const auto at = [](int32_t mode, int32_t millivolt, int32_t microampere) {
     Mdx rig;
     rig.set("P100", 0);
@@ -56,6 +57,7 @@ TEST(MovidriveSetpoint, ModesOfAi1) {
 }
 
 TEST(MovidriveSetpoint, OffsetFactorAndFilterOfAi1) {
+  PROVES("DRV-11");
   Mdx rig;
   rig.set("P100", 0);
   rig.ai1(1900);
@@ -74,6 +76,7 @@ TEST(MovidriveSetpoint, OffsetFactorAndFilterOfAi1) {
 }
 
 TEST(MovidriveSetpoint, SecondAnalogInput) {
+  PROVES("DRV-12");
   Mdx rig;
   rig.set("P100", 0);
   rig.ai1(2000);
@@ -175,6 +178,7 @@ TEST(MovidriveSetpoint, SetpointHold) {
 }
 
 TEST(MovidriveSetpoint, StopFunctionOfBothSets) {
+  PROVES("DRV-13");
   for (const bool second : {false, true}) {
     Mdx rig;
     rig.set("P604", 7);  // DI05 PAR. SWITCHOVER
@@ -200,6 +204,7 @@ TEST(MovidriveSetpoint, StopFunctionOfBothSets) {
 
 // Below its middle to the lower edge, from there to the upper one (ours).
 TEST(MovidriveSetpoint, SkipWindow) {
+  PROVES("DRV-14");
   Mdx rig;
   rig.bus_control();
   rig.set("P740", 600'000);
@@ -230,6 +235,7 @@ TEST(MovidriveSetpoint, SkipWindow) {
 }
 
 TEST(MovidriveSetpoint, ChangeOfDirection) {
+  PROVES("DRV-15");
   Mdx rig;
   rig.bus_control();
   rig.set("P350", 1);
@@ -455,6 +461,7 @@ TEST(MovidriveLimits, LimitSwitchesSayNothingOfAStoppedDrive) {
 
 // More than the torque of P303 = 150 %: friction blocks the motor, a hanging load drags it backwards.
 TEST(MovidriveLimits, SpeedMonitoring) {
+  PROVES("DRV-16");
   for (const bool dragged : {false, true})
     for (int32_t mode = 0; mode <= 3; ++mode) {
       MachineData machine = light_machine();

@@ -98,6 +98,7 @@ TEST(ReferenceSignals, GoOnAsTicksDo) {
 }
 
 TEST(ReferenceSignals, Speed) {
+  PROVES("DRV-01");
   for (const int32_t delay : {0, 500})
     for (const int32_t when : {0, 1}) {
       Bench bench(OutputFunction::SpeedReference);
@@ -131,6 +132,7 @@ TEST(ReferenceSignals, ShortChangesDoNotShow) {
 }
 
 TEST(ReferenceSignals, SpeedWindow) {
+  PROVES("DRV-02");
   for (const int32_t when : {0, 1}) {
     Bench bench(OutputFunction::SpeedWindow);
     bench.settings.window_center = 1'000'000;
@@ -149,6 +151,7 @@ TEST(ReferenceSignals, SpeedWindow) {
 }
 
 TEST(ReferenceSignals, SetpointReached) {
+  PROVES("DRV-03");
   for (const int32_t when : {0, 1}) {
     Bench bench(OutputFunction::SetpointReached);
     bench.settings.compare_hysteresis = 50'000;
@@ -185,6 +188,7 @@ TEST(ReferenceSignals, SetpointReachedWhilePositioning) {
 #endif
 
 TEST(ReferenceSignals, Current) {
+  PROVES("DRV-04");
   for (const int32_t when : {0, 1}) {
     Bench bench(OutputFunction::CurrentReference);
     bench.settings.current_reference = 100'000;
@@ -317,6 +321,7 @@ void expect_imax(const ImaxRun& run) {
 }
 
 TEST(Imax, AtEveryLimit) {
+  PROVES("DRV-05");
   for (int32_t limit = 60; limit <= 150; ++limit)
     for (const int32_t when : {0, 1}) {
       SCOPED_TRACE(testing::Message() << "P303 " << limit << " %, P442 " << when);
@@ -358,6 +363,7 @@ TEST(Imax, OfATorqueSetpointBeyondTheLimit) {
 }
 
 TEST(OutputFunctions, EachFollowsItsState) {
+  PROVES("DRV-06");
   struct Row {
     OutputFunction function;
     std::function<void(OutputInputs&)> act;
@@ -396,6 +402,7 @@ TEST(OutputFunctions, EachFollowsItsState) {
 
 // P001 = P000 x P850 / P851 (1053 1610 p. 68, 81), P022 = P303 x AI2 / 10 V (p. 68), to the last digit.
 TEST(DisplayValues, UserDisplayAndExternalLimit) {
+  PROVES("DRV-07");
   DriveRig rig("md60a");
   rig.bus_control();
   rig.set("P302", 5'000'000);

@@ -175,6 +175,7 @@ TEST(Torque, SlaveFreeRun) {
 // P304 bounds the active current in CFC and SERVO: 40 % of IN are half of the rated torque of a motor with 80 %, so 3 of the
 // 6 rpm a millisecond that it makes of the shaft; the output current is that and the magnetizing current of 60 %.
 TEST(TorqueLimit, BoundsTheActiveCurrent) {
+  PROVES("DRV-09");
   MachineData machine = light_machine();
   machine.inertia = 400;
   for (const int mode : {0, 5, 11, 13, 16, 18})

@@ -7,6 +7,7 @@
 
 #include "runtime/motion/motor.hpp"
 #include "runtime/signals/find.hpp"
+#include "tests/harness/proves.hpp"
 #include "tests/runtime/plant/plain_plant.hpp"
 #include "tests/runtime/plant/plant_file_texts.hpp"
 
@@ -175,6 +176,7 @@ TEST(OwnersMachine, EnabledWhileItTurnsIsF01) {
 }
 
 TEST(OwnersMachine, AnalogOutputsByFunctionScalingAndMode) {
+  PROVES("DRV-10");
   const Owner plant("", "P640 = 3\nP641 = 3000\nP642 = 3\nP643 = 2\nP644 = -1000\nP645 = 1\n");
   plant->run_until(3 * kSecond);
   EXPECT_NEAR(plant.signal("AO1_current"), 4 + 16 * 1.0, 0.01);  // 1000 rpm x 3 of 3000 rpm
