@@ -129,5 +129,21 @@ TEST(Why, NamesWhatChangesTheSetpoint) {
             std::string::npos);
 }
 
+// The table of --watch has an analog output whose parameters are not those of the factory: 5 V of H478 = 5000 (10000 a 10 V).
+TEST(Watch, HasTheAnalogOutputsThatThePlantSets) {
+  const TemporaryFolder folder;
+  folder.write("A.IPC", "long lCount; main() { H478 = 5000; while (1) { lCount++; } }\n");
+  const auto table = [&](const std::string& parameters) {
+    const std::string plant = folder.write(
+        "p.toml", "[[station]]\nname = \"u1\"\nunit = \"md60a\"\nprogram = \"A.IPC\"\n[station.parameters]\n" + parameters);
+    return run_ipos({"run", plant, "--for", "100ms", "--watch"}).out;
+  };
+  EXPECT_EQ(table("").find("AO1"), std::string::npos);
+  const std::string set = table("P640 = \"IPOS OUTPUT\"\n");
+  EXPECT_NE(set.find("AO1"), std::string::npos) << set;
+  EXPECT_NE(set.find("5.000 V"), std::string::npos) << set;
+  EXPECT_EQ(set.find("AO2"), std::string::npos) << set;
+}
+
 }  // namespace
 }  // namespace ipos::tests
