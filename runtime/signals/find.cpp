@@ -119,6 +119,8 @@ std::vector<Signal> default_signals(Owner owner) {
 }
 
 bool is_unit_value(const stdlib::UnitType& unit, std::string_view name) {
+  // Of the switches every unit has one.
+  if (const StationSwitchType* turned = find_switch(name); turned != nullptr && turned->which == StationSwitch::Mains) return true;
   const auto is_called = [name](const AnalogKind& kind) { return kind.signal == name; };
   return is_word(name, kProcessWords) || has_drive_value(unit, name) || find_state(name) >= 0 || parse_input(name) >= 0 ||
          parse_output(name) >= 0 || std::any_of(analog_kinds().begin(), analog_kinds().end(), is_called) ||

@@ -59,8 +59,8 @@ TEST(UnitData, AreTheOwnersAndReadOnly) {
     EXPECT_EQ(unit.value("071"), current);
     EXPECT_EQ(unit.value("076") % 100, version);
     EXPECT_GT(unit.value("076"), 800'000'000) << "a part number before it";
-    for (const uint16_t index : {8'300, 8'301, 8'361}) {
-      const auto reply = unit.parameters().execute(ParameterService::Write, index, 1);
+    for (const int index : {8'300, 8'301, 8'361}) {
+      const auto reply = unit.parameters().execute(ParameterService::Write, static_cast<uint16_t>(index), 1);
       ASSERT_FALSE(reply.has_value()) << index;
       EXPECT_EQ(reply.error().additional, 0x12) << "read access only";
     }

@@ -82,7 +82,7 @@ TEST(PlantFileSurroundings, MistakesOfStimuli) {
                       {"mains = ^0\n", "mains must be a text in quotes"},
                       {"mains = ^'up'\n", "unknown mains 'up'; known are off, on"},
                       {"mains = 'off'\nset = ^1\n", "a [[stimulus]] has either mains or set"},
-                      {"mains = 'off'\nswitch = ^'s13'\n", "a [[stimulus]] has either"},
+                      {"mains = ^'off'\nswitch = 's13'\n", "a [[stimulus]] has either switch or mains"},
                       {"parameter = 'P130'\nset = ^'1 rpm'\n", "P130"},
                       {"parameter = 'P130'\nset = ^true\n", "P130 must be a whole number"},
                       {"input = ^'DI18'\nset = 1\n", "'DI18' is no input"},
