@@ -44,11 +44,12 @@ enum class UnaryOp : uint8_t { Minus, BitNot, Not };
 struct Constant { int32_t value; };
 struct Load { Place place; };
 struct Unary { UnaryOp op; ExprPtr operand = nullptr; };
-struct Step { Place place; int32_t delta; bool prefix; };          // ++ and --
+// `within`: variables that a computed place may be, when they are known.
+struct Step { Place place; int32_t delta; bool prefix; std::optional<NumberRange> within{}; };          // ++ and --
 // Comparisons, && and || give 0 or 1. `op_span` is empty where the source has no such operator: a computed index times the size.
 struct Binary { BinaryOp op; ExprPtr left = nullptr; ExprPtr right = nullptr; Span op_span{}; };
 struct Conditional { ExprPtr condition = nullptr; ExprPtr then = nullptr; ExprPtr otherwise = nullptr; };
-struct Assign { std::optional<BinaryOp> op; Place target; ExprPtr value = nullptr; Span op_span{}; };
+struct Assign { std::optional<BinaryOp> op; Place target; ExprPtr value = nullptr; Span op_span{}; std::optional<NumberRange> within{}; };
 struct Comma { ExprPtr left = nullptr; ExprPtr right = nullptr; };
 
 // Without a value: on their own, in a comma expression, or as a branch of ?: on its own.

@@ -1,9 +1,12 @@
 // Follows the operators as far as constants decide them.
 #include "compiler/sema/decided.hpp"
 
+#include <vector>
+
 #include "compiler/ast/walk.hpp"
 #include "compiler/sema/expressions.hpp"
 #include "compiler/sema/fold.hpp"
+#include "stdlib/system_variables.hpp"
 
 namespace ipos::compiler {
 namespace {
@@ -50,6 +53,68 @@ BinaryOp mirrored(BinaryOp op) {
   }
 }
 
+// A variable compared with a constant.
+struct Compared {
+  int32_t number;
+  BinaryOp op;
+  int32_t value;
+
+  bool holds(int64_t at) const {
+    switch (op) {
+      case BinaryOp::Lt: return at < value;
+      case BinaryOp::Le: return at <= value;
+      case BinaryOp::Gt: return at > value;
+      case BinaryOp::Ge: return at >= value;
+      case BinaryOp::Eq: return at == value;
+      default: return at != value;
+    }
+  }
+};
+
+std::optional<Compared> comparison(const ExprPtr& expr) {
+  const auto* node = std::get_if<checked::Binary>(&expr->node);
+  if (node == nullptr || !is_comparison(node->op)) return std::nullopt;
+  const int32_t* left = constant_value(node->left);
+  const int32_t* right = constant_value(node->right);
+  if ((left == nullptr) == (right == nullptr)) return std::nullopt;
+  const auto* load = std::get_if<checked::Load>(&(right != nullptr ? node->left : node->right)->node);
+  // A system variable may give another value each time.
+  if (load == nullptr || load->place.offset != nullptr ||
+      load->place.number >= static_cast<int32_t>(stdlib::kFirstSystemVariable))
+    return std::nullopt;
+  return Compared{load->place.number, right != nullptr ? node->op : mirrored(node->op), right != nullptr ? *right : *left};
+}
+
+// Comparisons joined by one operator.
+void collect(const ExprPtr& expr, BinaryOp joint, std::vector<Compared>& all) {
+  const auto* node = std::get_if<checked::Binary>(&expr->node);
+  if (node != nullptr && node->op == joint) {
+    collect(node->left, joint, all);
+    collect(node->right, joint, all);
+  } else if (const auto found = comparison(expr)) {
+    all.push_back(*found);
+  }
+}
+
+// `a == 1 && a == 2` is false whatever a is, `a != 1 || a != 2` is true. Between the values of two comparisons, and beside
+// them, nothing changes.
+std::optional<Outcome> contradiction(const ExprPtr& expr, BinaryOp joint) {
+  std::vector<Compared> all;
+  collect(expr, joint, all);
+  const bool wanted = joint == BinaryOp::LogicalAnd;
+  for (size_t n = 0; n < all.size(); ++n)
+    for (size_t earlier = 0; earlier < n; ++earlier) {
+      if (all[n].number != all[earlier].number) continue;
+      bool possible = false;
+      for (const int64_t value : {all[n].value, all[earlier].value})
+        for (const int64_t at : {value - 1, value, value + 1})
+          possible = possible || (at >= INT32_MIN && at <= INT32_MAX && all[n].holds(at) == wanted &&
+                                  all[earlier].holds(at) == wanted);
+      if (!possible) return Outcome{!wanted, false};
+    }
+  return std::nullopt;
+}
+
 std::optional<Outcome> outcome(const ExprPtr& expr) {
   if (const int32_t* value = constant_value(expr)) return Outcome{*value != 0, true};
   if (const auto* unary = std::get_if<checked::Unary>(&expr->node)) {
@@ -63,7 +128,7 @@ std::optional<Outcome> outcome(const ExprPtr& expr) {
     const bool deciding = node->op == BinaryOp::LogicalOr;
     for (const ExprPtr& side : {node->left, node->right})
       if (const auto inner = outcome(side); inner && inner->truth == deciding) return inner;
-    return std::nullopt;
+    return contradiction(expr, node->op);
   }
   const int32_t* left = constant_value(node->left);
   const int32_t* right = constant_value(node->right);

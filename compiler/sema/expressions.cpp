@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/ast/print.hpp"
 #include "compiler/sema/decided.hpp"
 #include "compiler/sema/fold.hpp"
 #include "stdlib/language_tables.hpp"
@@ -160,7 +161,30 @@ ExprPtr ExpressionChecker::value_of(const ast::Step& node, const ast::Expr& expr
   record_write(*what, node.operand->span);
   const bool up = node.op == ast::StepOp::PreIncrement || node.op == ast::StepOp::PostIncrement;
   const bool prefix = node.op == ast::StepOp::PreIncrement || node.op == ast::StepOp::PreDecrement;
-  return make_expr(expr.span, checked::Step{what->place, up ? 1 : -1, prefix});
+  return make_expr(expr.span, checked::Step{what->place, up ? 1 : -1, prefix, what->extent});
+}
+
+// A constant result that is not what the operator says. Hexadecimal numbers are bits, which may run over.
+void ExpressionChecker::check_constants(const ast::Binary& node, int32_t left, int32_t right, Span span) {
+  using ast::BinaryOp;
+  const auto* a = std::get_if<ast::Number>(&node.left->node);
+  const auto* b = std::get_if<ast::Number>(&node.right->node);
+  if (node.op == BinaryOp::Div) {
+    const bool written = a != nullptr && b != nullptr && !span.begin.in_macro() && !node.right->span.begin.in_macro();
+    if (written && left != 0 && right != 0 && left / int64_t{right} == 0)
+      context_.diagnostics.report(Diag::ConstantQuotient, span, {fmt::format("{}", left), fmt::format("{}", right)});
+    return;
+  }
+  const int64_t exact = node.op == BinaryOp::Mul   ? int64_t{left} * right
+                        : node.op == BinaryOp::Add ? int64_t{left} + right
+                        : node.op == BinaryOp::Sub ? int64_t{left} - right
+                                                   : 0;
+  const bool bits = (a != nullptr && a->hex) || (b != nullptr && b->hex);
+  if (bits || (exact >= INT32_MIN && exact <= INT32_MAX)) return;
+  context_.diagnostics.report(
+      Diag::ConstantOverflow, span,
+      {fmt::format("{} {} {}", left, ast::spelling(node.op), right), fmt::format("{}", exact),
+       fmt::format("{}", *fold(node.op, left, right))});
 }
 
 ExprPtr ExpressionChecker::value_of(const ast::Binary& node, const ast::Expr& expr) {
@@ -172,6 +196,7 @@ ExprPtr ExpressionChecker::value_of(const ast::Binary& node, const ast::Expr& ex
   const int32_t* a = constant_value(left);
   const int32_t* b = constant_value(right);
   if (a != nullptr && b != nullptr) {
+    check_constants(node, *a, *b, expr.span);
     if (const auto result = fold(node.op, *a, *b)) return make_expr(expr.span, checked::Constant{*result});
   } else if (a != nullptr && (node.op == BinaryOp::LogicalAnd || node.op == BinaryOp::LogicalOr)) {
     const bool decided = (*a != 0) == (node.op == BinaryOp::LogicalOr);
@@ -216,7 +241,7 @@ ExprPtr ExpressionChecker::assign(const ast::Assign& node, std::optional<Object>
   const int32_t* known = constant_value(right);
   if (!node.op && known != nullptr && left->place.offset == nullptr)
     context_.stores.push_back({static_cast<uint32_t>(left->place.number), *known, span});
-  return make_expr(span, checked::Assign{node.op, left->place, right, node.op_span});
+  return make_expr(span, checked::Assign{node.op, left->place, right, node.op_span, left->extent});
 }
 
 ExprPtr ExpressionChecker::copy_structure(const ast::Assign& node, Object target, Span span) {

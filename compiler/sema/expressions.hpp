@@ -70,6 +70,7 @@ class ExpressionChecker {
   checked::ExprPtr assign(const ast::Assign& node, std::optional<Object> target, Span span);
   checked::ExprPtr copy_structure(const ast::Assign& node, Object target, Span span);
   checked::ExprPtr call(const ast::Call& node, Span span);
+  void check_constants(const ast::Binary& node, int32_t left, int32_t right, Span span);
   void check_divisor(ast::BinaryOp op, checked::Expr& right);
 
   void unknown_name(std::string_view name, Span span, bool function);

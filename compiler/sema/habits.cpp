@@ -43,6 +43,8 @@ bool is_truth(const ast::Expr& expr) {
   return is_comparison(node->op) || node->op == BinaryOp::LogicalAnd || node->op == BinaryOp::LogicalOr;
 }
 
+bool has_comparison(const ast::Binary& node) { return bare_comparison(*node.left) || bare_comparison(*node.right); }
+
 class Habits {
  public:
   Habits(const SourceMap& sources, Diagnostics& diagnostics) : sources_(sources), diagnostics_(diagnostics) {}
@@ -68,6 +70,9 @@ class Habits {
       const ast::Binary* inner = bare_binary(*side);
       const bool sum = inner != nullptr && (inner->op == BinaryOp::Add || inner->op == BinaryOp::Sub);
       if ((bits && bare_comparison(*side)) || (shift && sum)) return weaker(node, *inner);
+      // `a == 1 | b == 2 & c == 3`: read from the left, it is not what it is.
+      const bool mixed = inner != nullptr && side == node.right && is_bitwise(node.op) && is_bitwise(inner->op) && inner->op != node.op;
+      if (mixed && has_comparison(*inner)) return weaker(node, *inner);
     }
     if (is_comparison(node.op) && bare_comparison(*node.left)) {
       const ast::Binary& inner = *bare_binary(*node.left);

@@ -9,14 +9,13 @@
 #include <utility>
 
 #include "compiler/sema/call_graph.hpp"
+#include "compiler/sema/command_writes.hpp"
 #include "compiler/sema/walk.hpp"
 #include "stdlib/unit_names.hpp"
 
 namespace ipos::compiler {
 namespace {
 
-constexpr int32_t kTransmitCyclic = 1;  // keywords.def, set scom
-constexpr int32_t kReceive = 3;
 constexpr int32_t kSbus2 = 0x1000000;  // IPOSplus p. 320
 
 enum class Known : uint8_t { Always, Synchronous, Channel2 };

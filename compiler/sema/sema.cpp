@@ -2,12 +2,14 @@
 #include "compiler/sema/sema.hpp"
 
 #include "compiler/sema/call_graph.hpp"
+#include "compiler/sema/command_check.hpp"
 #include "compiler/sema/context.hpp"
 #include "compiler/sema/declarations.hpp"
 #include "compiler/sema/habits.hpp"
 #include "compiler/sema/map.hpp"
 #include "compiler/sema/observers.hpp"
 #include "compiler/sema/sbus_check.hpp"
+#include "compiler/sema/slips.hpp"
 #include "compiler/sema/statements.hpp"
 #include "compiler/sema/variable_use.hpp"
 #include "compiler/sema/writers.hpp"
@@ -35,6 +37,7 @@ void check_bodies(const ast::Program& program, Context& context) {
     context.function = n;
     context.order = orders[n];
     check_habits(*bodies[n]->body, context.sources, context.diagnostics);
+    check_slips(*bodies[n]->body, context.sources, context.diagnostics);
     context.program.functions[n].body = StatementChecker(context).function_body(*bodies[n]->body);
   }
 }
@@ -79,6 +82,7 @@ std::optional<checked::Program> check(
   check_writers(context);
   check_calls(context.program, unit, sources, diagnostics);
   check_sbus_objects(context);
+  check_commands(context);
   if (diagnostics.has_errors()) return std::nullopt;
   context.program.observers = std::make_shared<const Observers>(context);
   return std::move(context.program);

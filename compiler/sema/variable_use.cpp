@@ -13,6 +13,7 @@
 #include "compiler/sema/fold.hpp"
 #include "stdlib/header_names.hpp"
 #include "stdlib/language_tables.hpp"
+#include "stdlib/system_variables.hpp"
 
 namespace ipos::compiler {
 namespace {
@@ -35,6 +36,16 @@ struct ReadArgument {
 constexpr ReadArgument kReadArguments[] = {{"SETSYS", 1}, {"SCOM", 1},  {"MOVLNK", 0}, {"VARINT", 0},
                                            {"BMOV", 2},   {"BMOVN", 2}, {"COPY", 1}};
 
+constexpr std::string_view kPairs[] = {"SSPOSSPEED", "SSPOSRAMP"};
+
+// Bits that have a meaning, of system variables in which a program looks for them (system_variables.def).
+struct NamedBits {
+  uint32_t number;
+  std::array<int32_t, 2> bits;
+};
+constexpr NamedBits kNamedBits[] = {{stdlib::system_variable("StatusWord"), {19, 20}},
+                                    {stdlib::system_variable("ControlWord"), {11, 30}}};
+
 class VariableUse {
  public:
   explicit VariableUse(Context& context) : context_(context) {}
@@ -52,6 +63,13 @@ class VariableUse {
     if (const auto* node = std::get_if<ast::Deref>(&expr.node)) is_pointer(*node->number);
     if (const auto* node = std::get_if<ast::Assign>(&expr.node)) store(*node);
     if (const auto* node = std::get_if<ast::Call>(&expr.node)) call(*node);
+    if (const auto* node = std::get_if<ast::Binary>(&expr.node); node != nullptr && node->op == ast::BinaryOp::And) {
+      check_mask(*node->left, *node->right);
+      check_mask(*node->right, *node->left);
+    }
+    if (const auto* node = std::get_if<ast::Assign>(&expr.node);
+        node != nullptr && (node->op == ast::BinaryOp::And || node->op == ast::BinaryOp::Or))
+      check_mask(*node->target, *node->value);
   }
 
  private:
@@ -93,6 +111,20 @@ class VariableUse {
     const auto* name = std::get_if<ast::Name>(&object.node);
     if (name == nullptr || !raw_number(name->text, number)) return;
     for (uint32_t n = number; n < number + kReachOfNumber && n < kMaxNumbers; ++n) reached_.set(n);
+  }
+
+  // StatusWord & 19
+  void check_mask(const ast::Expr& word, const ast::Expr& mask) {
+    const auto* name = std::get_if<ast::Name>(&word.node);
+    const auto* number = std::get_if<ast::Number>(&mask.node);
+    uint32_t which = 0;
+    if (name == nullptr || number == nullptr || number->hex || !raw_number(name->text, which)) return;
+    for (const NamedBits& row : kNamedBits) {
+      if (row.number != which || std::find(row.bits.begin(), row.bits.end(), number->value) == row.bits.end()) continue;
+      const std::string text(stdlib::find_system_variable(static_cast<uint16_t>(which))->compiler_name);
+      const std::string bit = fmt::format("{}", number->value);
+      context_.diagnostics.report(Diag::BitNumber, mask.span, {bit, text, bit});
+    }
   }
 
   // Variables in the number after a '*' hold numbers themselves.
@@ -169,19 +201,37 @@ class VariableUse {
   // Initials may be set once and for all by an operator panel, aliases and raw names are numbers others know.
   void check_written(const Variable& variable) {
     if (variable.storage != Storage::Global) return;
-    bool read = false;
+    bool read = false, written = false;
     for (uint32_t n = variable.number; n < variable.number + variable.type.size() && n < kMaxNumbers; ++n) {
       if (reached_.test(n)) return;
       const auto found = context_.accesses.find(n);
       if (found == context_.accesses.end()) continue;
-      if (!found->second.writers.empty()) return;
+      written = written || !found->second.writers.empty();
       read = read || !found->second.readers.empty();
     }
     const auto given = given_.find(&variable);
+    if (written) {
+      if (given != given_.end()) check_half(variable, given->second);
+      return;
+    }
     if (!read && given == given_.end()) return;
     context_.diagnostics.report(
         Diag::NeverWritten, variable.span,
         {variable.name, given == given_.end() ? "read" : fmt::format("given to '{}'", given->second)});
+  }
+
+  // Of a pair of values for the two directions.
+  void check_half(const Variable& variable, std::string_view function) {
+    const StructType* type = variable.type.structure;
+    if (type == nullptr || variable.type.count != 0 ||
+        std::find(std::begin(kPairs), std::end(kPairs), type->name) == std::end(kPairs))
+      return;
+    for (const StructMember& member : type->members) {
+      const auto found = context_.accesses.find(variable.number + member.offset);
+      if (found == context_.accesses.end() || found->second.writers.empty())
+        context_.diagnostics.report(Diag::HalfWritten, variable.span,
+                                    {variable.name, std::string(function), member.names.front()});
+    }
   }
 
   Context& context_;

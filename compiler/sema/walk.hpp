@@ -80,4 +80,19 @@ void walk(const Stmt& stmt, Visit&& visit) {
   std::visit(detail::StmtWalker<std::remove_reference_t<Visit>>{visit}, stmt.node);
 }
 
+// Visits a statement and all within it, outer ones first, in the order of the source.
+template <typename Visit>
+void walk_statements(const StmtPtr& stmt, Visit&& visit) {
+  if (stmt == nullptr) return;
+  visit(*stmt);
+  const auto inner = [&](const StmtPtr& part) { walk_statements(part, visit); };
+  if (const auto* node = std::get_if<Block>(&stmt->node))
+    for (const StmtPtr& part : node->body) inner(part);
+  if (const auto* node = std::get_if<If>(&stmt->node)) inner(node->then), inner(node->otherwise);
+  if (const auto* node = std::get_if<While>(&stmt->node)) inner(node->body);
+  if (const auto* node = std::get_if<DoWhile>(&stmt->node)) inner(node->body);
+  if (const auto* node = std::get_if<For>(&stmt->node)) inner(node->body);
+  if (const auto* node = std::get_if<Switch>(&stmt->node)) inner(node->body);
+}
+
 }  // namespace ipos::compiler::checked

@@ -47,7 +47,8 @@ class Finder {
       const auto* assign = std::get_if<checked::Assign>(&expr.node);
       if (assign == nullptr || assign->target.offset != nullptr) return;
       const auto number = static_cast<uint32_t>(assign->target.number);
-      if (found_.contains(number) && constant_value(assign->value) == nullptr) computed_.insert(number);
+      const bool looked_at = found_.contains(number) || found_.contains(number + 1);
+      if (looked_at && (assign->op || constant_value(assign->value) == nullptr)) computed_.insert(number);
     });
     for (const ConstantStore& store : context_.stores)
       if (found_.contains(store.number)) constants_[store.number].push_back(&store);
@@ -100,9 +101,22 @@ class Finder {
       if (!place.row->member.starts_with("Cam")) out_.anywhere = Watch{place.row->who, place.call};
       if (known == constants_.end()) return;
     }
+    const uint32_t variables = place.row->variables == 2 && is_short(number - 1) ? 1 : place.row->variables;
     for (const ConstantStore* store : known->second)
-      for (uint32_t n = 0; n < place.row->variables; ++n)
+      for (uint32_t n = 0; n < variables; ++n)
         out_.variables.emplace(static_cast<uint32_t>(store->value) + n, Watch{place.row->who, store->span});
+  }
+
+  // A telegram of 4 bytes and less has one variable; its length stands before the number of the data.
+  bool is_short(uint32_t format) const {
+    constexpr int32_t kLength = 0xFF, kBytesOfOne = 4;
+    bool any = false;
+    for (const ConstantStore& store : context_.stores) {
+      if (store.number != format) continue;
+      if ((store.value & kLength) > kBytesOfOne) return false;
+      any = true;
+    }
+    return any && !computed_.contains(format);
   }
 
   const Context& context_;

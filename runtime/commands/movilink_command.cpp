@@ -31,14 +31,14 @@ constexpr auto kBuses = [] {
   constexpr std::nullopt_t Every = std::nullopt;
   return std::to_array<BusRow>({
 #define MOVILINK_BUS(name, code, units, text) {code, units, text},
-#include "runtime/commands/movilink_buses.def"
+#include "stdlib/movilink_buses.def"
   });
 }();
 constexpr auto kAbsentBuses = [] {
   using enum stdlib::Trait;
   return std::to_array<BusRow>({
 #define ABSENT_BUS(code, units, text) {code, units, text},
-#include "runtime/commands/movilink_buses.def"
+#include "stdlib/movilink_buses.def"
   });
 }();
 

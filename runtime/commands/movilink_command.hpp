@@ -20,7 +20,7 @@ namespace ipos::runtime {
 // BusType of MOVLNK (1053 1610 p. 47).
 enum class MovilinkBus : uint8_t {
 #define MOVILINK_BUS(name, code, units, text) name,
-#include "runtime/commands/movilink_buses.def"
+#include "stdlib/movilink_buses.def"
 };
 inline constexpr size_t kMovilinkBuses = static_cast<size_t>(MovilinkBus::Canopen) + 1;
 

@@ -23,6 +23,7 @@ Compilation compile_b(const std::string& text, bool atomic = false) {
   options.unit = stdlib::find_unit(std::string_view("mdxb"));
   options.atomic = atomic;
   options.warnings.apply("no-never-written");
+  options.warnings.apply("no-timer-not-set");
   return compile("test.IPC", "", "#include <constb.h>\n" + text, options);
 }
 

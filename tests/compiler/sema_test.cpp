@@ -213,12 +213,13 @@ TEST(Mistakes, IdentifiersOfMovilinkByUnitType) {
   }
 }
 
-// Those with a test of their own, below and in seen_steps_test.cpp.
+// Those with a test of their own, below, in seen_steps_test.cpp and in machine_mistakes_test.cpp.
 TEST(Mistakes, EveryRowOfTheTableIsTested) {
   std::set<std::string_view> tested{"E0207", "E0230", "E0233", "E0236", "W0240", "W0241", "W0260", "W0261", "N0219"};
   for (const Mistake& mistake : mistakes()) tested.insert(mistake.code);
   for (const DiagInfo& row : diagnostic_table())
-    EXPECT_TRUE(row.code.substr(1, 2) != "02" || tested.contains(row.code)) << row.code << " " << row.name;
+    EXPECT_TRUE(row.code.substr(1, 2) != "02" || tested.contains(row.code) || (row.code >= "W0262" && row.code <= "W0294"))
+        << row.code << " " << row.name;
 }
 
 // A note: no option makes an error of it, and the program is good.
@@ -389,7 +390,7 @@ TEST(Correct, NoMessageFor) {
       "main() { while (H0); H1 = 1; for (H0 = 0; H0 < 5; H0++) ; }",
       "#include <const.h>\n#define MODE GO_WAIT\nmain() { _GoAbs(MODE, 1); _GoRel(GO_NOWAIT, H0); "
       "_AxisStop(3); }",
-      "#include <const.h>\nMOVLNK m; MLDATA d; main() { m.Format = ML_CFT_PAR1; m.DPointer = numof(d); "
+      "#include <const.h>\nMOVLNK m; MLDATA d; main() { m.BusType = 5; m.Service = 1; m.Format = ML_CFT_PAR1; m.DPointer = numof(d); "
       "_MoviLink(m); "
       "H0 = d.ReadPar; }",
       "SCREC r; long p, d; main() { p = numof(d); r.DPointer = p; d = 1; _SBusCommDef(3, r); }",

@@ -417,7 +417,7 @@ TEST(ToldBlocks, WhatFitsIsNotTold) {
   for (const char* good :
        {"long v[2]; main() { v[0] = 1; _SetSys(9, v); }", "long v[3]; main() { v[0] = 1; _SetSys(9, v); }",
         "typedef struct { long a; long b; } S; S s; main() { s.a = s.b = 1; _SetSys(9, s); }",
-        "SSPOSRAMP r; main() { r.Up = 1; _SetSys(9, r); }", "long a; main() { _GetSys(a, 0); H0 = a; }",
+        "SSPOSRAMP r; main() { r.Up = r.Down = 1; _SetSys(9, r); }", "long a; main() { _GetSys(a, 0); H0 = a; }",
         "long v[2]; main() { _GetSys(v, 7); H0 = v[0]; }", "long v[14]; main() { _GetSys(v, 8); H0 = v[0]; }",
         "GSCAM_EXT e; main() { e.CamState = 1; _GetSys(e, 8); }", "main() { _SBusCommDef(1, H300); }",
         "#declare A H300\nmain() { _SBusCommDef(1, A); }",

@@ -46,8 +46,8 @@ TEST(SbusObjects, CycleTimesOfEveryUnit) {
     EXPECT_EQ(told_by_line(source + "_SBusCommDef(1, t); }", unit), expected);
   }
   // Nothing else has a cycle time in its second variable.
-  EXPECT_EQ(codes("SCTRACYCL t; main() { t.Len = 15; _SBusCommDef(2, t); }"), Codes{});
-  EXPECT_EQ(codes("SCREC t; main() { t.Len = 15; _SBusCommDef(3, t); }"), Codes{});
+  EXPECT_EQ(codes("SCTRACYCL t; main() { t.Len = 0x105; _SBusCommDef(2, t); }"), Codes{});
+  EXPECT_EQ(codes("SCREC t; main() { t.Len = 0x105; _SBusCommDef(3, t); }"), Codes{});
   EXPECT_EQ(codes("SCTRCYCL t; main() { t.Offset = 15; _SBusCommDef(1, t); }"), Codes{});
   EXPECT_EQ(codes("SCTRCYCL t; long before; main() { before = 15; t.CycleTime = 10; _SBusCommDef(1, t); }"),
             Codes{});
@@ -130,8 +130,8 @@ TEST(SbusObjects, CountOnceAndOnlyWithAKnownCycle) {
   const auto with = [&](const std::string& more) {
     return codes(full.substr(0, full.size() - 1) + more + "}");
   };
-  EXPECT_EQ(with("_SBusCommDef(1, t[0]);"), Codes{});
-  EXPECT_EQ(with("t[0].CycleTime = 20; _SBusCommDef(1, t[0]);"), Codes{});
+  EXPECT_EQ(with("_SBusCommDef(1, t[0]);"), Codes{"W0274"});
+  EXPECT_EQ(with("t[0].CycleTime = 20; _SBusCommDef(1, t[0]);"), Codes{"W0274"});
   EXPECT_EQ(with("_SBusCommDef(2, H200);"), Codes{});
   EXPECT_EQ(with("H200 = 1060; H201 = 20; _SBusCommDef(1, H200);"), Codes{"W0212"});
   EXPECT_EQ(with("H200 = 1060; H201 = 20; if (H0) _SBusCommDef(1, H200);"), Codes{"W0212"});
@@ -185,7 +185,7 @@ TEST(Calls, OfWhichNoneReachesAFunction) {
   EXPECT_EQ(codes("main() { _SetTask2(1, f); } f() { g(); } g() { }"), Codes{});
   EXPECT_EQ(codes("main() { _SetTask2(0, f); } f() { }"), Codes{});
   EXPECT_EQ(codes("main() { _SetInterrupt(1, f); } f() { }"), Codes{});
-  EXPECT_EQ(codes("VARINT v; main() { v.Control = 1; _SetVarInterrupt(v, f); } f() { }", "mdxb"), Codes{});
+  EXPECT_EQ(codes("VARINT v; main() { v.IntNum = 1; _SetVarInterrupt(v, f); } f() { }", "mdxb"), Codes{});
   EXPECT_EQ(codes("main() { _SystemCall(1, f); _InputCall(1, 3, g); } f() { } g() { }"), Codes{});
   EXPECT_EQ(codes("main() { if (H0) { while (H1) f(); } else g(); for (h(); H1; i()) ; switch (H2) { case 1: "
                   "j(); } do "
@@ -328,7 +328,7 @@ TEST(Variables, WhoseNumberIsForgotten) {
 TEST(Variables, WrittenAsANumber) {
   const auto said = [](const std::string& number) {
     return all_texts("SCREC r; long d, v[3], e; main() { d = 1; e = d; v[0] = e; r.DPointer = " + number +
-                     "; _SBusCommDef(3, r); }");
+                     "; }");
   };
   const auto is = [](const std::string& number, const std::string& name) {
     return "H" + number + " is '" + name + "'; numof( " + name + " ) says so\n  declared here\n";

@@ -209,7 +209,7 @@ TEST(Temporaries, PragmaMovesThem) {
 
 TEST(Temporaries, TheAdviceOfTheOverflowWorks) {
   // A chain of subtractions nested to the right holds one temporary a level.
-  std::string nested = "b";
+  std::string nested = "a";
   for (int level = 0; level < 30; ++level) nested = "b - (c * " + nested + ")";
   const std::string text = "long a, b, c; main() { b = 2; c = 3; a = a - (" + nested + "); }";
   const Compilation broken = compile_text(text);

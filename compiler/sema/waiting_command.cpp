@@ -1,0 +1,103 @@
+// VARINT, commands that wait in interrupt routines or longer than the watchdog, and commands that a unit does not have.
+#include <fmt/format.h>
+
+#include "compiler/sema/command_check.hpp"
+#include "compiler/sema/command_writes.hpp"
+
+namespace ipos::compiler {
+namespace {
+
+using vm::Opcode;
+
+struct VarintMember {
+  enum : uint32_t { Control, IntNum, SrcVar, CompareVar, Mode, Priority };
+};
+
+// docs/reference/stdlib.md, variable interrupts.
+struct ElementRange {
+  uint32_t element;
+  const char* name;
+  int32_t most;
+};
+constexpr ElementRange kRanges[] = {{VarintMember::Control, "Control", 2}, {VarintMember::IntNum, "IntNum", 3}, {VarintMember::Mode, "Mode", 9}, {VarintMember::Priority, "Priority", 10}};
+
+int32_t word(const ConstantFlow::Point& point, size_t argument) {
+  const int32_t* known = std::get_if<int32_t>(&point.call.arguments[argument]);
+  return known != nullptr ? *known : 0;
+}
+
+bool is_travel(Opcode opcode) {
+  switch (opcode) {
+    case Opcode::GoAbsH:
+    case Opcode::GoAbsK:
+    case Opcode::GoRelH:
+    case Opcode::GoRelK:
+    case Opcode::Go0: return true;
+    default: return false;
+  }
+}
+
+}  // namespace
+
+void CommandCheck::check_interrupt(const Point& point) {
+  const uint32_t first = order_block(point.call).first;
+  for (const ElementRange& range : kRanges)
+    refuse(Diag::InterruptValue, first + range.element, [&](int32_t value) {
+      return value >= 0 && value <= range.most
+                 ? std::string()
+                 : fmt::format("{} {} of a variable interrupt is fault F10: 0 to {}", range.name, value, range.most);
+    });
+  const KnownValue* control = flow_.only(first + VarintMember::Control);
+  if (control == nullptr || control->value == 0) return;
+  const KnownValue* priority = flow_.only(first + VarintMember::Priority);
+  if (priority != nullptr && !priority->assigned() && priority->value == 0)
+    warn(Diag::InterruptOff, point.expr.span,
+         {fmt::format("Priority of '{}' is never set, and 0 switches the interrupt off; 1 to 10 switch it on",
+                      name_of(first))});
+  const Opcode start = control->value == 1 ? Opcode::Task2 : Opcode::Task;
+  for (const ProgramRoot& root : roots_.roots)
+    if (root.start == start) return;
+  if (control->value > 2) return;
+  warn(Diag::InterruptOff, place(*control, point),
+       {fmt::format("Control {} takes the interrupt to task {}, which nothing starts", control->value,
+                    control->value + 1)});
+}
+
+void CommandCheck::check_waiting(const Point& point) {
+  const Opcode opcode = point.call.opcode;
+  const int32_t ms = opcode == Opcode::WaitK ? word(point, 0) : 0;
+  if (ms > 0) {
+    const auto& watchdog = flow_.values(ConstantFlow::kWatchdog);
+    bool shorter = !watchdog.empty();
+    for (const KnownValue& known : watchdog) shorter = shorter && known.value >= 0 && known.value < ms;
+    if (shorter)
+      if (Diagnostic* message = warn(Diag::WatchdogTooShort, point.expr.span,
+                                     {fmt::format("{}", ms), fmt::format("{}", watchdog.front().value)});
+          message != nullptr && watchdog.front().assigned())
+        message->notes.push_back({watchdog.front().span, "it is started here"});
+  }
+  const ProgramRoot& root = roots_.roots[point.root];
+  if (!root.is_interrupt()) return;
+  bool waits = ms > 0 || opcode == Opcode::WaitH || opcode == Opcode::Movlnk;
+  if (opcode == Opcode::Movlnk)
+    for (const KnownValue& address : flow_.values(order_block(point.call).first + MovlnkMember::Address))
+      waits = waits && address.value != kOwnUnitAddress;
+  // Keywords of GO0: bit 0 is NW, 8 ends a reference travel; of the others 1 is WAIT.
+  if (is_travel(opcode))
+    waits = opcode == Opcode::Go0 ? word(point, 0) % 2 == 0 && word(point, 0) != 8 : word(point, 0) == 1;
+  if (!waits) return;
+  if (Diagnostic* message =
+          warn(Diag::WaitInInterrupt, point.expr.span, {context_.program.functions[root.function].name}))
+    message->notes.push_back({root.place, "it is installed here"});
+}
+
+void CommandCheck::check_lacking(const Point& point) {
+  const Opcode opcode = point.call.opcode;
+  const char* reason = nullptr;
+  if (opcode == Opcode::MovCom || opcode == Opcode::MovOn) reason = "ipos does not simulate MOVCOM and MOVON";
+  const bool positions = is_travel(opcode) || opcode == Opcode::TouchProbe || opcode == Opcode::AxisStop;
+  if (positions && !context_.unit.has(stdlib::Trait::Positioning)) reason = "this unit does not position";
+  if (reason != nullptr) warn(Diag::CommandLacking, point.expr.span, {reason});
+}
+
+}  // namespace ipos::compiler
