@@ -79,6 +79,50 @@ TEST(LspActions, OfMembersAndDirectives) {
   EXPECT_EQ(member[0]["edit"]["changes"][uri(kProgram)][0]["range"], range(2, 12, 18));
 }
 
+// The text after the only quick fix of a program, which has one mistake somewhere in its lines.
+std::string mended(const std::string& source) {
+  Client client;
+  client.open(kProgram, source);
+  const Json found = actions(client, kProgram, {{"start", {{"line", 0}, {"character", 0}}}, {"end", {{"line", 99}, {"character", 0}}}});
+  if (found.size() != 1) return "fixes: " + found.dump();
+  const Json edit = found[0]["edit"]["changes"][uri(kProgram)][0];
+  const auto offset = [&](const Json& at) {
+    size_t begin = 0;
+    for (int line = 0; line < at["line"]; ++line) begin = source.find('\n', begin) + 1;
+    return begin + at["character"].get<size_t>();
+  };
+  const size_t begin = offset(edit["range"]["start"]);
+  return source.substr(0, begin) + edit["newText"].get<std::string>() + source.substr(offset(edit["range"]["end"]));
+}
+
+TEST(LspActions, WhereTheMendIsCertain) {
+  EXPECT_EQ(mended("const long MAX = 5;\nmain() { H1 = MAX; }\n"), "#define MAX 5\nmain() { H1 = MAX; }\n");
+  EXPECT_EQ(mended("const long A = -5, B = 0x10;\nmain() { H1 = A + B; }\n"),
+            "#define A -5\n#define B 0x10\nmain() { H1 = A + B; }\n");
+  EXPECT_EQ(mended("enum { IDLE, RUN = 5, STOP };\nmain() { H1 = STOP; }\n"),
+            "#define IDLE 0\n#define RUN 5\n#define STOP 6\nmain() { H1 = STOP; }\n");
+  EXPECT_EQ(mended("main() { H481.1 = 1; }\n"), "main() { _BitSet(H481, 1); }\n");
+  EXPECT_EQ(mended("long a; main() { a.3 = 0; }\n"), "long a; main() { _BitClear(a, 3); }\n");
+  EXPECT_EQ(mended("main() { _BitSet(H481.1); }\n"), "main() { _BitSet(H481, 1); }\n");
+  EXPECT_EQ(mended("main() { H1 = 16#FF; }\n"), "main() { H1 = 0xFF; }\n");
+  EXPECT_EQ(mended("main() { _Wait(T#1m30s); }\n"), "main() { _Wait(90000); }\n");
+  EXPECT_EQ(mended("#include <constb.h>\n#include <iob.h>\nmain() { DO01 = 1; }\n"),
+            "#include <constb.h>\n#include <iob.h>\nmain() { SET_DO01; }\n");
+  EXPECT_EQ(mended("#include <constb.h>\n#include <iob.h>\nmain() { DO01 = 0; }\n"),
+            "#include <constb.h>\n#include <iob.h>\nmain() { CLEAR_DO01; }\n");
+  EXPECT_EQ(mended("main() { if (H1 > 1); H2 = 1; else H2 = 2; }\n"), "main() { if (H1 > 1) H2 = 1; else H2 = 2; }\n");
+  EXPECT_EQ(mended("main() { switch (H1) { csae 1: H2 = 1; } }\n"), "main() { switch (H1) { case 1: H2 = 1; } }\n");
+  EXPECT_EQ(mended("SCREC r; long d;\nmain() { d = 1; r.DPointer = d; }\n"),
+            "SCREC r; long d;\nmain() { d = 1; r.DPointer = numof(d); }\n");
+  EXPECT_EQ(mended("#include <const.h>\nmain() { if (StatusWord & 19) H1 = 1; }\n"),
+            "#include <const.h>\nmain() { if (StatusWord & (1 << 19)) H1 = 1; }\n");
+}
+
+TEST(LspActions, NoneWhereItIsNot) {
+  EXPECT_EQ(mended("main() { H1 = 5; } const long MAX = 5;\n"), "fixes: []") << "a directive begins a line";
+  EXPECT_EQ(mended("long a; main() { if (a.3) H1 = 1; }\n"), "fixes: []") << "there are several ways to test a bit";
+}
+
 TEST(LspActions, OfPlants) {
   Client client;
   client.open(kPlant, "[[station]]\nname = \"saw\"\nunit = \"md60b\"\nprogramm = \"A.IPC\"\n");

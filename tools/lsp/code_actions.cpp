@@ -1,10 +1,12 @@
-// "did you mean" as an edit: the message names what is meant, and what stands there instead is the misspelt word.
+// Mends as edits: those that are certain (mends.hpp), and "did you mean": the message names what is meant, and what stands
+// there instead is the misspelt word.
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "stdlib/spelling.hpp"
 #include "tools/lsp/marks.hpp"
+#include "tools/lsp/mends.hpp"
 #include "tools/lsp/plant_document.hpp"
 
 namespace ipos::tools::lsp {
@@ -52,7 +54,8 @@ Json misspelt(std::string_view text, const Json& diagnostic, const std::string& 
 }
 
 Json quick_fix(const Json& diagnostic, const std::string& uri, const Json& range, const std::string& text) {
-  return {{"title", fmt::format("Write '{}'", text)},
+  const std::string line = text.substr(0, text.find('\n'));
+  return {{"title", text.empty() ? "Leave it out" : fmt::format("Write '{}'{}", line, line == text ? "" : " ...")},
           {"kind", "quickfix"},
           {"diagnostics", {diagnostic}},
           {"isPreferred", true},
@@ -85,8 +88,11 @@ Json code_actions(Workspace& workspace, const Json& params) {
   const auto own = all.find(path);
   if (own == all.end()) return out;
   for (const Json& diagnostic : own->second) {
+    if (!overlap(diagnostic["range"], params["range"])) continue;
+    if (const auto mend = mend_of(*text, diagnostic, workspace.encoding))
+      out.push_back(quick_fix(diagnostic, uri_of(path), range_of(*text, mend->begin, mend->end, workspace.encoding), mend->text));
     const std::string meant = offered(diagnostic);
-    if (meant.empty() || !overlap(diagnostic["range"], params["range"])) continue;
+    if (meant.empty()) continue;
     const Json range = misspelt(*text, diagnostic, meant, workspace.encoding);
     if (!range.is_null()) out.push_back(quick_fix(diagnostic, uri_of(path), range, meant));
   }
