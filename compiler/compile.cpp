@@ -30,7 +30,7 @@ Compilation compile(const std::string& name, const std::string& path, std::strin
   PreprocessOptions preprocessing;
   preprocessing.include_dirs = options.include_dirs;
   preprocessing.defines = options.defines;
-  preprocessing.headers = stdlib::headers::embedded_files();
+  preprocessing.headers = stdlib::built_in_files();
   preprocessing.read_file = options.read_file;
   preprocessing.list_files = options.list_files;
 

@@ -61,7 +61,8 @@ std::optional<FoundFile> find_include(const std::string& name, const SourceFile&
   }
   // The built-in headers come from a file system that does not tell cases apart (ours).
   for (const stdlib::EmbeddedFile& header : options.headers)
-    if (stdlib::equal_but_for_case(header.name, plain)) return FoundFile{name, "", std::string(header.text), &header};
+    if (stdlib::equal_but_for_case(header.name, plain))
+      return FoundFile{std::string(header.name), "", std::string(header.text), &header};
   searched.emplace_back("the built-in headers");
   return std::nullopt;
 }

@@ -35,8 +35,8 @@ std::span<const Token> scanned_header(const stdlib::EmbeddedFile& header) {
     std::once_flag once;
     std::vector<Token> tokens;
   };
-  static std::vector<Scanned> all(stdlib::headers::embedded_files().size());
-  const std::span<const stdlib::EmbeddedFile> ours = stdlib::headers::embedded_files();
+  static std::vector<Scanned> all(stdlib::built_in_files().size());
+  const std::span<const stdlib::EmbeddedFile> ours = stdlib::built_in_files();
   for (size_t n = 0; n < ours.size(); ++n) {
     if (&ours[n] != &header) continue;
     std::call_once(all[n].once, [&] { all[n].tokens = scan(header); });

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -55,6 +56,22 @@ TEST(Headers, EmbeddedCopiesAreTheFiles) {
     EXPECT_FALSE(text.empty()) << file.name;
     EXPECT_EQ(file.text, text) << file.name;
   }
+}
+
+TEST(Headers, EmbeddedBlocksAreTheFiles) {
+  size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(IPOS_STDLIB_BLOCKS)) {
+    std::ifstream in(entry.path(), std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    const EmbeddedFile* built_in = find_built_in_file("blocks/" + entry.path().filename().string());
+    ASSERT_NE(built_in, nullptr) << entry.path();
+    EXPECT_EQ(built_in->text, text) << entry.path();
+    ++files;
+  }
+  EXPECT_EQ(files, blocks::embedded_files().size());
+  EXPECT_EQ(built_in_files().size(), files + headers::embedded_files().size());
+  EXPECT_EQ(find_built_in_file("Const.H")->name, "const.h");
+  EXPECT_EQ(find_built_in_file("ramp.h"), nullptr);
 }
 
 TEST(Headers, EachHasAGuard) {
@@ -162,7 +179,7 @@ TEST(Documentation, NamesEverything) {
     EXPECT_NE(page.find("`" + std::string(function.name) + "("), std::string::npos) << function.name;
   for (const Structure& structure : structures())
     EXPECT_NE(page.find("\n| " + std::string(structure.name) + " | "), std::string::npos) << structure.name;
-  for (const EmbeddedFile& file : headers::embedded_files())
+  for (const EmbeddedFile& file : built_in_files())
     EXPECT_NE(page.find("`" + std::string(file.name) + "`"), std::string::npos) << file.name;
 }
 

@@ -10,6 +10,7 @@
 
 #include "compiler/asm/disassembler.hpp"
 #include "compiler/asm/text_forms.hpp"
+#include "stdlib/headers.hpp"
 
 namespace ipos::tools::coverage {
 namespace {
@@ -48,6 +49,8 @@ class Fold {
     for (const auto& [key, times] : lines_)
       out_.files[file(std::get<1>(key))].lines[std::get<2>(key)] += times;
     add_functions();
+    // Blocks are no code of the program: they have tests of their own, and no file that a report could show.
+    std::erase_if(out_.files, [](const auto& entry) { return stdlib::find_built_in_file(entry.first) != nullptr; });
     return std::move(out_);
   }
 

@@ -57,6 +57,7 @@ const std::vector<DapServer::Request>& DapServer::requests() {
       {"setFunctionBreakpoints", &S::set_function_breakpoints},
       {"threads", &S::threads},
       {"stackTrace", &S::stack_trace},
+      {"source", &S::source},
       {"scopes", &S::scopes},
       {"variables", &S::variables},
       {"setVariable", &S::set_variable},

@@ -67,6 +67,7 @@ class DapServer final : public FrontEnd, private runtime::BusObserver {
   Json restart(const Json& arguments);
   Json threads(const Json& arguments);
   Json stack_trace(const Json& arguments);
+  Json source(const Json& arguments);
   Json scopes(const Json& arguments);
   Json variables(const Json& arguments);
   Json set_variable(const Json& arguments);
@@ -101,6 +102,7 @@ class DapServer final : public FrontEnd, private runtime::BusObserver {
   int64_t line_for_client(uint32_t line) const { return int64_t{line} - (lines_from_1_ ? 0 : 1); }
   int64_t column_for_client(uint32_t column) const { return int64_t{column} - (columns_from_1_ ? 0 : 1); }
   std::string path_for_client(const std::string& path) const;
+  Json source_for_client(const std::string& file) const;
 
   // A command by number; below 0 and after the program stands what fills up a view of commands.
   struct CommandPlace {

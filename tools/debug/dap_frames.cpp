@@ -5,6 +5,7 @@
 #include <charconv>
 #include <filesystem>
 
+#include "stdlib/headers.hpp"
 #include "tools/debug/dap.hpp"
 #include "tools/input/sources.hpp"
 #include "tools/lsp_base/positions.hpp"
@@ -34,6 +35,25 @@ uint32_t DapServer::line_of_client(const Json& line) const {
 std::string DapServer::path_for_client(const std::string& path) const {
   const std::string whole = whole_path(path);
   return uris_ ? lsp::uri_of(whole) : whole;
+}
+
+// A block of the compiler is no file: the editor asks for its text by its number.
+Json DapServer::source_for_client(const std::string& file) const {
+  std::error_code error;
+  const auto built_in = stdlib::built_in_files();
+  const stdlib::EmbeddedFile* text = fs::exists(file, error) ? nullptr : stdlib::find_built_in_file(file);
+  if (text != nullptr)
+    return {{"name", file}, {"path", file}, {"sourceReference", text - built_in.data() + 1}, {"origin", "built in"}};
+  Json source{{"name", fs::path(file).filename().string()}, {"path", path_for_client(file)}};
+  if (source_has_changed(file)) source["origin"] = "changed since it was compiled: the lines are those of the text that runs";
+  return source;
+}
+
+Json DapServer::source(const Json& arguments) {
+  const auto built_in = stdlib::built_in_files();
+  const auto number = arguments.at("sourceReference").get<size_t>();
+  if (number == 0 || number > built_in.size()) throw ValueError("there is no source of this number");
+  return {{"content", std::string(built_in[number - 1].text)}};
 }
 
 // (station + 1) x 65536 + address: what fills a view up in front of the first command has smaller numbers, which belong
@@ -77,10 +97,7 @@ Json DapServer::stack_trace(const Json& arguments) {
     if (frame.place.line != 0) {
       one["line"] = line_for_client(frame.place.line);
       one["column"] = column_for_client(frame.place.column);
-      one["source"] = {{"name", fs::path(frame.place.file).filename().string()},
-                       {"path", path_for_client(frame.place.file)}};
-      if (source_has_changed(frame.place.file))
-        one["source"]["origin"] = "changed since it was compiled: the lines are those of the text that runs";
+      one["source"] = source_for_client(frame.place.file);
     }
     all.push_back(std::move(one));
   }
@@ -114,7 +131,7 @@ Json DapServer::disassemble(const Json& arguments) {
     Json one{{"address", command_reference(place->station, address)}, {"instruction", code.text(address)}};
     if (const SourcePlace source = code.place(address); source.line != 0) {
       one["line"] = line_for_client(source.line);
-      one["location"] = {{"path", path_for_client(source.file)}};
+      one["location"] = source_for_client(source.file);
     }
     all.push_back(std::move(one));
   }

@@ -165,7 +165,7 @@ std::vector<std::string> included_files(const std::string& path, const CompileFl
   compiler::Diagnostics ignored;
   const compiler::SourceFile& main = sources.add(path, path, read_file(path));
   compiler::PreprocessOptions options;
-  options.headers = stdlib::headers::embedded_files();
+  options.headers = stdlib::built_in_files();
   options.include_dirs = flags.include_dirs;
   options.defines = flags.defines;
   options.read_file = try_read_file;
@@ -193,7 +193,7 @@ std::string emit_stage(const std::string& path, const CompileFlags& flags, const
     compiler::Diagnostics diagnostics(options.warnings);
     const compiler::SourceFile& main = sources.add(path, path, read_file(path));
     const compiler::PreprocessOptions preprocessing{options.include_dirs, options.defines,
-                                                    stdlib::headers::embedded_files(), options.read_file,
+                                                    stdlib::built_in_files(), options.read_file,
                                                     options.list_files};
     const std::string text =
         stage == "tokens"

@@ -5,6 +5,7 @@
 #include <mutex>
 #include <utility>
 
+#include "stdlib/headers.hpp"
 #include "tools/cli/files.hpp"
 
 namespace ipos::tools {
@@ -31,7 +32,9 @@ std::optional<std::string> source_text(const std::string& path) {
     const std::lock_guard lock(kept_mutex);
     if (const auto known = kept.find(path); known != kept.end()) return known->second;
   }
-  return read_source(path);
+  if (std::optional<std::string> text = read_source(path)) return text;
+  const stdlib::EmbeddedFile* built_in = stdlib::find_built_in_file(path);
+  return built_in == nullptr ? std::nullopt : std::optional(std::string(built_in->text));
 }
 
 std::string source_line(const std::string& path, size_t line) {
@@ -49,7 +52,9 @@ std::string source_line(const std::string& path, size_t line) {
 
 bool source_has_changed(const std::string& path) {
   const auto text = source_text(path);
-  return text && try_read_file(path) != text;
+  if (!text) return false;
+  const auto now = try_read_file(path);
+  return now ? now != text : stdlib::find_built_in_file(path) == nullptr;
 }
 
 }  // namespace ipos::tools

@@ -211,7 +211,7 @@ Json completion(Workspace& workspace, const Json& params) {
     const std::string_view directive = line.substr(first + 1);
     if (directive.find("include") != std::string_view::npos) {
       Json items = Json::array();
-      for (const stdlib::EmbeddedFile& header : stdlib::headers::embedded_files())
+      for (const stdlib::EmbeddedFile& header : stdlib::built_in_files())
         items.push_back(item(std::string(header.name), kFile, "built in"));
       return items;
     }

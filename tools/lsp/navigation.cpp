@@ -128,12 +128,12 @@ Json highlights(Workspace& workspace, const Json& params) {
   return all;
 }
 
-// The text of a built-in header, for editors that show one.
+// The text of a built-in header or block, for editors that show one: "ipos:/const.h", "ipos:/blocks/ramp.h".
 Json header_text(Workspace&, const Json& params) {
   const std::string uri = params.value("uri", "");
-  const std::string_view name = std::string_view(uri).substr(std::min(uri.rfind('/') + 1, uri.size()));
-  for (const stdlib::EmbeddedFile& header : stdlib::headers::embedded_files())
-    if (header.name == name) return {{"text", std::string(header.text)}};
+  std::string_view name = uri;
+  if (name.starts_with(kHeaderScheme)) name.remove_prefix(kHeaderScheme.size());
+  if (const stdlib::EmbeddedFile* header = stdlib::find_built_in_file(name)) return {{"text", std::string(header->text)}};
   throw RequestError(ErrorCode::InvalidParams, "there is no built-in header " + std::string(name));
 }
 
