@@ -43,7 +43,7 @@ Compilation compile(const std::string& name, const std::string& path, std::strin
   if (out.diagnostics.has_errors()) return out;
   out.program = check(front->tree, *out.unit, *out.sources, out.diagnostics, options.is_unit_value);
   if (!out.program) return out;
-  auto generated = generate(*out.program, *out.unit, *out.sources, options.atomic, out.diagnostics);
+  auto generated = generate(*out.program, *out.unit, *out.sources, {options.atomic, options.as_written}, out.diagnostics);
   if (!generated) return out;
   (out.diagnostics.has_errors() ? out.too_long : out.image) = std::move(generated->image);
   out.map = std::move(out.program->map);

@@ -24,7 +24,8 @@ struct CompileOptions {
   std::function<std::optional<std::string>(const std::string& path)> read_file;
   std::function<std::vector<std::string>(const std::string& folder)> list_files;  // for hints; may be empty
   WarningOptions warnings;
-  bool atomic = false;  // variables that others see get their values once
+  bool atomic = false;      // variables that others see get their values once
+  bool as_written = false;  // -O0: each statement as it stands, for comparisons; else forms with fewer commands where nobody sees it
   // Whether a unit has a value of this name in traces, tests and tools; a variable that hides it gets a note. May be empty.
   std::function<bool(const stdlib::UnitType& unit, std::string_view name)> is_unit_value;
   // Null: mdxb for a source that includes constb.h or iob.h, else md60a.

@@ -181,20 +181,39 @@ class Maps {
 
   // --- states
 
+  // The numbers that are the only ones left behind a comparison with a constant.
+  std::vector<int64_t> singled_out(size_t command) const {
+    const vm::Instruction& code = graph_.commands[command].code;
+    const bool equal = code.opcode == Opcode::JmpEqHK || code.opcode == Opcode::JmpNeHK;
+    if (!equal && code.opcode != Opcode::JmpLtHK && code.opcode != Opcode::JmpGeHK) return {};
+    const Interval before = values_.at(command, static_cast<uint32_t>(code.operands[0]));
+    const int64_t limit = code.operands[1];
+    std::vector<int64_t> numbers;
+    if (before.least == limit - 1 && before.most >= limit && (!equal || before.most == limit)) numbers.push_back(before.least);
+    if (before.most == limit + (equal ? 1 : 0) && before.least <= limit && (!equal || before.least == limit)) numbers.push_back(before.most);
+    return numbers;
+  }
+
   // A variable is a state where the code compares it, or what was copied of it just before, with two numbers or more for
   // equality, and gives it numbers.
   std::vector<StateMap> states() const {
-    std::map<uint32_t, std::set<int64_t>> compared;
+    std::map<uint32_t, std::set<int64_t>> compared, left_over;
     std::map<uint32_t, uint32_t> copies;  // of the commands before this one, in their order
     for (size_t n = 0; n < graph_.commands.size(); ++n) {
       const vm::Instruction& code = graph_.commands[n].code;
       const auto first = static_cast<uint32_t>(code.operands[0]);
       if (code.opcode == Opcode::SetHH) copies[first] = static_cast<uint32_t>(code.operands[1]);
-      if (code.opcode != Opcode::JmpEqHK && code.opcode != Opcode::JmpNeHK) continue;
       const auto copy = copies.find(first);
-      compared[first].insert(code.operands[1]);
-      if (copy != copies.end()) compared[copy->second].insert(code.operands[1]);
+      const auto add = [&](std::map<uint32_t, std::set<int64_t>>& to, int64_t number) {
+        to[first].insert(number);
+        if (copy != copies.end()) to[copy->second].insert(number);
+      };
+      if (code.opcode == Opcode::JmpEqHK || code.opcode == Opcode::JmpNeHK) add(compared, code.operands[1]);
+      for (const int64_t number : singled_out(n)) add(left_over, number);
     }
+    // A switch of many cases asks for halves of them; the last number of a range is then what is left over.
+    for (auto& [variable, numbers] : compared)
+      if (numbers.size() > 1) numbers.merge(left_over[variable]);
     std::vector<StateMap> all;
     for (const auto& [variable, numbers] : compared) {
       if (numbers.size() < 2) continue;

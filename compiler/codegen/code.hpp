@@ -25,6 +25,11 @@ struct Command {
   uint32_t held = 0;                   // temporaries whose values are needed after a call
 };
 
+struct GenerateOptions {
+  bool atomic = false;      // variables that others see get their values once, computed aside; else a warning says which do not
+  bool as_written = false;  // -O0: none of the forms that take fewer commands than what stands in the source
+};
+
 // An assignment whose intermediate results somebody sees.
 struct SeenSteps {
   int32_t variable;

@@ -30,7 +30,7 @@ void report_steps(const checked::Program& program, const SeenSteps& steps, Diagn
 }  // namespace
 
 std::optional<GeneratedProgram> generate(const checked::Program& program, const stdlib::UnitType& unit,
-                                         const SourceMap& sources, bool atomic, Diagnostics& diagnostics) {
+                                         const SourceMap& sources, GenerateOptions options, Diagnostics& diagnostics) {
   const CallGraph graph = call_graph(program);
   const std::vector<bool> used = reachable(graph, program.main);
   // END would end the task also where somebody waits for the return.
@@ -42,7 +42,7 @@ std::optional<GeneratedProgram> generate(const checked::Program& program, const 
   int32_t variable_interrupts = 0;
   for (size_t n = 0; n < functions.size(); ++n) {
     if (!used[n]) continue;
-    functions[n] = FunctionGenerator(program, n, n == program.main && !main_called, atomic).generate();
+    functions[n] = FunctionGenerator(program, n, n == program.main && !main_called, options).generate();
     for (const SeenSteps& steps : functions[n].seen_steps) report_steps(program, steps, diagnostics);
     optimize(functions[n]);
     // Which interrupt a VARINT installs is known at run time only: each call in the source counts as one.

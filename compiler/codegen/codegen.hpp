@@ -7,10 +7,9 @@
 
 namespace ipos::compiler {
 
-// `atomic`: variables that others see get their values once, computed aside; else a warning says which do not.
 // Nothing when there are too many temporaries; a program that is too long comes with its error. The same
 // program always gives the same bytes.
 std::optional<GeneratedProgram> generate(const checked::Program& program, const stdlib::UnitType& unit,
-                                         const SourceMap& sources, bool atomic, Diagnostics& diagnostics);
+                                         const SourceMap& sources, GenerateOptions options, Diagnostics& diagnostics);
 
 }  // namespace ipos::compiler

@@ -14,6 +14,7 @@ void FunctionGenerator::effect(const Expr& expr) {
   const Hold hold(top_);
   if (!has_effect(expr)) return;
   if (const auto* node = std::get_if<checked::Assign>(&expr.node)) {
+    if (!options_.as_written && bit_move(*node, expr.span)) return;
     assign(*node, expr.span);
   } else if (const auto* move = std::get_if<checked::Step>(&expr.node)) {
     step(*move, expr.span, false);
@@ -73,7 +74,9 @@ FunctionGenerator::Operand FunctionGenerator::assign(const checked::Assign& node
 }
 
 FunctionGenerator::Operand FunctionGenerator::assign_indirect(const checked::Assign& node, Span span) {
-  const int32_t to = guarded({false, address(node.target, span)}, *node.value, span).value;
+  // A pointer of the statement moves with each of its uses, so it comes here last.
+  const bool moves = pointer_to(node.target) != nullptr;
+  int32_t to = moves ? 0 : guarded({false, address(node.target, span)}, *node.value, span).value;
   if (!node.op) {
     const Operand source = value(*node.value);
     int32_t from = source.value;
@@ -81,12 +84,14 @@ FunctionGenerator::Operand FunctionGenerator::assign_indirect(const checked::Ass
       from = temporary();
       set(from, source, span);
     }
+    if (moves) to = address(node.target, span);
     emit(Opcode::SetiStore, span, {to, from});
     return source;
   }
   const bool order_unseen = !has_effect(*node.value);
   Operand right;
   if (order_unseen) right = value(*node.value);
+  if (moves) to = address(node.target, span);
   const int32_t result = temporary();
   emit(Opcode::SetiLoad, span, {result, to});
   if (!order_unseen) right = value(*node.value);

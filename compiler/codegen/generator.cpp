@@ -57,13 +57,19 @@ void FunctionGenerator::statement(const checked::Stmt& stmt) {
   early_ = outside;
 }
 
-void FunctionGenerator::emit_stmt(const checked::ExprStmt& node, Span) { effect(*node.expr); }
+void FunctionGenerator::emit_stmt(const checked::ExprStmt& node, Span) {
+  const Hold hold(top_);
+  find_pointers(*node.expr);
+  effect(*node.expr);
+  pointers_.clear();
+}
 
 void FunctionGenerator::emit_stmt(const checked::Block& node, Span) {
   for (const checked::StmtPtr& stmt : node.body) statement(*stmt);
 }
 
 void FunctionGenerator::emit_stmt(const checked::If& node, Span span) {
+  if (!options_.as_written && bit_move(node, span)) return;
   const int otherwise = new_label();
   branch(*node.condition, otherwise, false);
   statement(*node.then);
@@ -80,6 +86,7 @@ void FunctionGenerator::emit_stmt(const checked::While& node, Span) {
 }
 
 void FunctionGenerator::emit_stmt(const checked::For& node, Span) {
+  if (!options_.as_written && copy_loop(node)) return;
   if (node.init != nullptr) effect(*node.init);
   loop(node.condition, node.step, *node.body, true_after(node.init, node.condition));
 }
@@ -133,23 +140,19 @@ void FunctionGenerator::emit_stmt(const checked::Switch& node, Span span) {
   for (size_t n = 0; n < node.labels; ++n) labels.push_back(new_label());
   const int end = new_label();
   const int otherwise = node.otherwise ? labels[*node.otherwise] : end;
+  std::vector<Case> cases;
+  for (const auto& [number, label] : node.cases) cases.push_back({number, labels[label]});
   {
     const Hold hold(top_);
-    Operand selector = value(*node.value);
-    // Read once: a task, an interrupt or a bus may change the variable between two comparisons.
-    if (!selector.constant && !is_temporary(selector.value) && node.cases.size() > 1) {
-      const int32_t copy = temporary();
-      set(copy, selector, node.value->span);
-      selector.value = copy;
+    const Operand selector = selector_of(node);
+    if (selector.constant) {
+      const auto chosen = std::ranges::find(cases, selector.value, &Case::number);
+      jump(chosen == cases.end() ? otherwise : chosen->label, span);
+    } else if (options_.as_written) {
+      compare_in_order(cases, selector.value, otherwise, node.value->span, span);
+    } else {
+      in_halves(std::move(cases), selector.value, otherwise, node.value->span);
     }
-    int target = otherwise;
-    for (const auto& [number, label] : node.cases) {
-      if (!selector.constant)
-        emit(Opcode::JmpEqHK, node.value->span, {selector.value, number}).label = labels[label];
-      else if (selector.value == number)
-        target = labels[label];
-    }
-    jump(target, span);
   }
   switches_.push_back(std::move(labels));
   breaks_.push_back(end);

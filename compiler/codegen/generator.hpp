@@ -2,6 +2,10 @@
 // cheaper one is taken.
 #pragma once
 
+#include <optional>
+#include <span>
+#include <vector>
+
 #include "compiler/codegen/code.hpp"
 #include "compiler/sema/checked.hpp"
 
@@ -9,10 +13,9 @@ namespace ipos::compiler {
 
 class FunctionGenerator {
  public:
-  // `ends_task`: return is END instead of RET (main, unless something calls it). `atomic`: what others see is
-  // computed aside.
-  FunctionGenerator(const checked::Program& program, size_t function, bool ends_task, bool atomic)
-      : program_(program), function_(function), ends_task_(ends_task), atomic_(atomic) {}
+  // `ends_task`: return is END instead of RET (main, unless something calls it).
+  FunctionGenerator(const checked::Program& program, size_t function, bool ends_task, GenerateOptions options)
+      : program_(program), function_(function), ends_task_(ends_task), options_(options) {}
 
   FunctionCode generate();
 
@@ -84,17 +87,45 @@ class FunctionGenerator {
   void compare(const checked::Binary& node, int label, bool when, Span span);
   void test(const checked::Expr& expr, int label, bool when);
 
+  // switches.cpp
+  struct Case {
+    int32_t number = 0;
+    int label = 0;
+  };
+  Operand selector_of(const checked::Switch& node);
+  void compare_in_order(std::span<const Case> cases, int32_t selector, int otherwise, Span at, Span span);
+  void in_halves(std::vector<Case> cases, int32_t selector, int otherwise, Span at);
+  void bisect(std::span<const Case> cases, int32_t selector, int otherwise, Span at, int64_t least, int64_t most);
+
+  // bit_moves.cpp, copy_loops.cpp: whether the statement was one that a single command does
+  bool bit_move(const checked::If& node, Span span);
+  bool bit_move(const checked::Assign& node, Span span);
+  bool copy_loop(const checked::For& node);
+
+  // indexes.cpp: the number of an element, computed once for its uses in a statement
+  struct Pointer {
+    const checked::Expr* offset = nullptr;
+    int32_t variable = 0;          // a temporary: number + offset
+    std::optional<int32_t> number;  // none: not computed yet
+  };
+  void find_pointers(const checked::Expr& expr);
+  Pointer* pointer_to(const checked::Place& place);
+  int32_t moved_to(Pointer& pointer, int32_t number, Span span);
+
   // steps.cpp: where an expression of several commands is computed
   struct Assignment {
     Span span;
     bool reads_target = false;
   };
   bool shows_steps(int32_t target);
+  // Whether nobody else writes it between two commands, and whether nobody else looks at it.
+  bool stays(int32_t variable) const;
+  bool is_own(int32_t variable) const;
 
   const checked::Program& program_;
   size_t function_;
   bool ends_task_;
-  bool atomic_;
+  GenerateOptions options_;
   bool early_ = false;     // before main has started anything
   Assignment assignment_;  // the innermost
   FunctionCode code_;
@@ -102,6 +133,7 @@ class FunctionGenerator {
   std::vector<int> breaks_;
   std::vector<int> continues_;
   std::vector<std::vector<int>> switches_;  // labels of the cases
+  std::vector<Pointer> pointers_;           // of the statement
 };
 
 // Whether evaluating `expr` may read or write a variable; indirect access and calls may do either to any.

@@ -219,7 +219,7 @@ void FunctionGenerator::conditional_into(const checked::Conditional& node, int32
 
 void FunctionGenerator::load_into(const checked::Place& place, int32_t target, Span span) {
   int32_t from = 0;
-  if (is_temporary(target) && !is_simple(*place.offset)) {
+  if (is_temporary(target) && !is_simple(*place.offset) && pointer_to(place) == nullptr) {
     into(*place.offset, target);
     operate(BinaryOp::Add, target, {true, place.number}, span);
     from = target;
@@ -231,6 +231,7 @@ void FunctionGenerator::load_into(const checked::Place& place, int32_t target, S
 
 // The variable that holds the number of a place.
 int32_t FunctionGenerator::address(const checked::Place& place, Span span) {
+  if (Pointer* pointer = pointer_to(place)) return moved_to(*pointer, place.number, span);
   if (place.number == 0) return variable(*place.offset);
   const int32_t result = temporary();
   into(*place.offset, result);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "compiler/sema/ranges.hpp"
 #include "compiler/sema/walk.hpp"
 #include "compiler/sema/watched.hpp"
 #include "stdlib/index_areas.hpp"
@@ -160,6 +161,19 @@ std::optional<Observer> Observers::other_root(size_t function, uint32_t variable
   }
   if (anywhere_ && !found->second.takers.empty()) return anywhere_;
   return std::nullopt;
+}
+
+// Where find() knows somebody who only reads, the value stays. A pointer may lead anywhere. What nobody in the program writes is
+// there for somebody outside, and so is what is kept without power.
+bool Observers::may_change(size_t function, uint32_t variable, bool early) const {
+  const auto found = accesses_.find(variable);
+  if (variable <= kLastNonVolatile || raw_names_.contains(variable) || found == accesses_.end() || found->second.writers.empty())
+    return true;
+  if (early) return false;
+  const auto beside = [&](const AccessPlace& place) { return run_at_once(function, place.function); };
+  return anywhere_ || watched_.contains(variable) || std::any_of(indirect_.begin(), indirect_.end(), beside) ||
+         std::any_of(found->second.writers.begin(), found->second.writers.end(), beside) ||
+         std::any_of(found->second.takers.begin(), found->second.takers.end(), beside);
 }
 
 std::optional<Observer> Observers::find(size_t function, uint32_t variable, bool early) const {

@@ -32,6 +32,9 @@ class Observers {
   // Who sees a variable that `function` writes, if anybody. `early`: before anything is started.
   std::optional<Observer> find(size_t function, uint32_t variable, bool early) const;
 
+  // Whether anything but `function` may write the variable, or the function itself while it runs for another root.
+  bool may_change(size_t function, uint32_t variable, bool early) const;
+
   // Whether a statement of main comes before anything is started, or everything that calls a function does.
   bool is_early(const checked::Stmt& stmt) const { return early_.contains(&stmt); }
   bool is_early(size_t function) const { return !late_[function]; }

@@ -1,6 +1,7 @@
 // Programs on the pages of the language compile without a message, and the page names every warning.
 #include <gtest/gtest.h>
 
+#include <regex>
 #include <span>
 #include <sstream>
 
@@ -38,7 +39,7 @@ TEST(LanguagePages, EveryWarningIsListed) {
 size_t commands_of(const std::string& statement) {
   const compiler::Compilation compiled = compiler::compile(
       "MAIN.IPC", "",
-      "long a, b, c, d, v[4], p;\nSCREC s, t;\nf() { d++; }\nmain() {\n" + statement + "\n}\n");
+      "long a, b, c, d, v[4], w[4], p;\nSCREC s, t;\nf() { d++; }\nmain() {\n" + statement + "\n}\n");
   if (!compiled.image) return 0;
   const vm::Image& image = *compiled.image;
   const size_t end = image.functions.size() > 1 ? image.functions[1].address : image.code.size();
@@ -55,7 +56,7 @@ TEST(LanguagePages, CostsAreReal) {
   for (std::string line; std::getline(lines, line) && line.starts_with("|");) {
     if (!line.starts_with("| `")) continue;
     const size_t end = line.find("` | ");
-    const std::string statement = line.substr(3, end - 3);
+    const std::string statement = std::regex_replace(line.substr(3, end - 3), std::regex(R"(\\\|)"), "|");
     EXPECT_EQ(line.substr(end + 4), std::to_string(commands_of(statement)) + " |") << statement;
     ++rows;
   }

@@ -105,5 +105,20 @@ TEST(Maps, StatesOfASwitch) {
   EXPECT_TRUE(has(std::nullopt, 0, 22));
 }
 
+// A switch of many cases asks for halves of them, and for the last one of a range not at all.
+TEST(Maps, StatesOfManyCases) {
+  std::string text = "long state, a;\nmain()\n{\n  state = 0;\n  while (1)\n  {\n    switch (state)\n    {\n";
+  for (int n = 0; n < 12; ++n)
+    text += "      case " + std::to_string(n) + ":\n        if (H483 & 1) state = " + std::to_string((n + 1) % 12) + ";\n        break;\n";
+  const ProgramMaps all = maps(text + "    }\n    if (H483 & 2) a = 5;\n  }\n}\n");
+  ASSERT_EQ(all.states.size(), 1U);
+  EXPECT_EQ(all.states.front().states, (std::vector<int64_t>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}));
+  EXPECT_EQ(all.states.front().ways.size(), 13U);  // from each to the next one, and the start
+  for (uint32_t n = 0; n < 12; ++n) {
+    const compiler::StateMap::Way way{int64_t{n}, (int64_t{n} + 1) % 12, 11 + 3 * n};
+    EXPECT_NE(std::find(all.states.front().ways.begin(), all.states.front().ways.end(), way), all.states.front().ways.end()) << n;
+  }
+}
+
 }  // namespace
 }  // namespace ipos::tests

@@ -78,6 +78,7 @@ void identify(Campaign& campaign, const CompileFlags& compile) {
   for (const auto* words : {&compile.include_dirs, &compile.defines})
     for (const std::string& word : *words) hash.add_text(word);
   hash.add_text(compile.unit);
+  if (compile.optimization != "1") hash.add_text("-O" + compile.optimization);
   hash.add_all(compile.atomic, campaign.duration, campaign.tests.size());
   for (const Factor& factor : campaign.factors) {
     hash.add_text(fmt::format("{} {} {} {} {}", static_cast<int>(factor.target), factor.station, factor.key, factor.signal.name, factor.signal_key));

@@ -105,6 +105,7 @@ void add_compile_options(cli::Verb& verb, CompileFlags& flags) {
     return offered_units();
   });
   verb.flag("--atomic", flags.atomic, "variables that others see never hold intermediate results");
+  verb.option("-O", flags.optimization, "0: commands as the source is written; 1: forms with fewer commands, where nobody sees it").one_of({"0", "1"});
   verb.option("--diagnostics", flags.diagnostics, "text, json or sarif").one_of({"text", "json", "sarif"});
 }
 
@@ -127,6 +128,7 @@ compiler::CompileOptions options_of(const CompileFlags& flags) {
   options.list_files = list_files;
   options.unit = unit_of(flags);
   options.atomic = flags.atomic;
+  options.as_written = flags.optimization == "0";
   options.is_unit_value = signals::is_unit_value;
   for (const std::string& warning : flags.warnings)
     if (!options.warnings.apply(warning))

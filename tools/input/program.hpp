@@ -20,6 +20,7 @@ struct CompileFlags {
   std::vector<std::string> warnings;      // -W...
   std::string unit;                       // --unit; empty: from the source
   bool atomic = false;                    // --atomic
+  std::string optimization = "1";         // -O: 0 or 1
   std::string diagnostics = "text";       // text, json or sarif
   bool allow_fmu = false;                 // --allow-fmu: machines of the plant may be programs of others
   BuildRecord* record = nullptr;          // takes what is read and told, in place of sources.hpp and standard error

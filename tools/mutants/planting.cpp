@@ -8,7 +8,6 @@
 #include <set>
 #include <tuple>
 
-#include "compiler/codegen/codegen.hpp"
 #include "runtime/unit/unit.hpp"
 #include "tools/cli/files.hpp"
 #include "tools/input/program.hpp"
@@ -46,17 +45,17 @@ std::set<testing::ProgramName> programs_of(const std::vector<testing::TestCase>&
 
 }  // namespace
 
-PlantedProgram::PlantedProgram(testing::ProgramName name, compiler::Compilation compiled, bool atomic)
+PlantedProgram::PlantedProgram(testing::ProgramName name, compiler::Compilation compiled, compiler::GenerateOptions options)
     : name_(std::move(name)),
       compiled_(std::move(compiled)),
-      atomic_(atomic),
+      options_(options),
       changes_(compiler::mutants::find_changes(*compiled_.program, *compiled_.sources)) {}
 
 std::optional<vm::Image> PlantedProgram::image_with(size_t change) {
   const std::lock_guard lock(mutex_);
   compiler::Diagnostics diagnostics;
   changes_[change].toggle();
-  auto generated = compiler::generate(*compiled_.program, *compiled_.unit, *compiled_.sources, atomic_, diagnostics);
+  auto generated = compiler::generate(*compiled_.program, *compiled_.unit, *compiled_.sources, options_, diagnostics);
   changes_[change].toggle();
   if (!generated || diagnostics.has_errors() || generated->image.code == compiled_.image->code) return std::nullopt;
   const vm::Limits limits = runtime::limits_of(*compiled_.unit);
@@ -70,7 +69,7 @@ Planting::Planting(const std::vector<testing::TestCase>& tests, const CompileFla
     if (!text) continue;
     compiler::Compilation compiled = testing::compile_for_test(name, *text, flags);
     if (!compiled.image) continue;
-    programs_.push_back(std::make_unique<PlantedProgram>(name, std::move(compiled), flags.atomic));
+    programs_.push_back(std::make_unique<PlantedProgram>(name, std::move(compiled), compiler::GenerateOptions{flags.atomic, flags.optimization == "0"}));
     find(*programs_.back());
   }
   leave_out_doubles();

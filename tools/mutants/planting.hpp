@@ -9,6 +9,7 @@
 #include <tuple>
 #include <vector>
 
+#include "compiler/codegen/codegen.hpp"
 #include "compiler/compile.hpp"
 #include "tools/mutants/mutant.hpp"
 #include "tools/testing/programs.hpp"
@@ -24,7 +25,7 @@ struct Lines {
 // One source, compiled for one unit.
 class PlantedProgram {
  public:
-  PlantedProgram(testing::ProgramName name, compiler::Compilation compiled, bool atomic);
+  PlantedProgram(testing::ProgramName name, compiler::Compilation compiled, compiler::GenerateOptions options);
 
   const testing::ProgramName& name() const { return name_; }
   const compiler::SourceMap& sources() const { return *compiled_.sources; }
@@ -37,7 +38,7 @@ class PlantedProgram {
  private:
   testing::ProgramName name_;
   compiler::Compilation compiled_;
-  bool atomic_;
+  compiler::GenerateOptions options_;
   std::vector<compiler::mutants::Change> changes_;
   std::mutex mutex_;
 };
