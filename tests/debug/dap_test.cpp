@@ -175,6 +175,64 @@ TEST_F(DapOfAPlant, AFrameStopsThePlant) {
   EXPECT_EQ(last_stop()["text"].get<std::string>().substr(0, 4), "40A#");
 }
 
+// Of the program: 4 is "main()", 5 "{", 6 to 8 have commands.
+TEST_F(Dap, BreakpointLocationsAreTheLinesWithCommands) {
+  launch();
+  const Json asked = ask("breakpointLocations", {{"source", {{"path", "P1.IPC"}}}, {"line", 4}, {"endLine", 8}})["body"]["breakpoints"];
+  std::vector<int> lines;
+  for (const Json& one : asked) lines.push_back(one["line"]);
+  EXPECT_EQ(lines, (std::vector<int>{6, 7, 8}));
+  EXPECT_EQ(ask("breakpointLocations", {{"source", {{"path", "P1.IPC"}}}, {"line", 5}})["body"]["breakpoints"].size(), 0U);
+  EXPECT_EQ(ask("breakpointLocations", {{"source", {{"path", "OTHER.IPC"}}}, {"line", 6}})["body"]["breakpoints"].size(), 0U);
+}
+
+// 5 and 0x04030201, the lowest byte first, in base64.
+TEST_F(Dap, MemoryIsReadFromAVariable) {
+  launch();
+  const int thread = ask("threads")["body"]["threads"][0]["id"];
+  const int frame = ask("stackTrace", {{"threadId", thread}})["body"]["stackFrames"][0]["id"];
+  const Json named = ask("scopes", {{"frameId", frame}})["body"]["scopes"][0]["variablesReference"];
+  ask("setVariable", {{"variablesReference", named}, {"name", "lFirst"}, {"value", "5"}});
+  ask("evaluate", {{"expression", "aTable[0] = 0x04030201"}, {"frameId", frame}, {"context", "repl"}});
+  const Json variables = ask("variables", {{"variablesReference", named}})["body"]["variables"];
+  const auto first = std::find_if(variables.begin(), variables.end(), [](const Json& one) { return one["name"] == "lFirst"; });
+  ASSERT_NE(first, variables.end());
+  const Json memory = ask("readMemory", {{"memoryReference", (*first)["memoryReference"]}, {"count", 8}})["body"];
+  EXPECT_EQ(memory["data"], "BQAAAAECAwQ=");
+  EXPECT_EQ(memory["unreadableBytes"], 0);
+  EXPECT_EQ(ask("readMemory", {{"memoryReference", (*first)["memoryReference"]}, {"offset", 5}, {"count", 2}})["body"]["data"], "AgM=");
+  EXPECT_EQ(ask("readMemory", {{"memoryReference", "0:H1023"}, {"count", 6}})["body"]["unreadableBytes"], 2);
+  for (const char* wrong : {"", "H420", "9:H420", "0:H1024", "0:H1x", "0:H-1"})
+    EXPECT_EQ(ask("readMemory", {{"memoryReference", wrong}, {"count", 4}})["success"], false) << wrong;
+}
+
+TEST_F(Dap, AFaultTellsWhatItIs) {
+  plant_ = plant_of({"long a, b;\nmain()\n{\n  a = 1 / b;\n}\n"});
+  launch();
+  EXPECT_EQ(ask("exceptionInfo", {{"threadId", 1}})["success"], false);
+  ask("continue");
+  EXPECT_EQ(last_stop()["reason"], "exception");
+  const Json info = ask("exceptionInfo", {{"threadId", 1}})["body"];
+  EXPECT_EQ(info["exceptionId"], "F10") << info;
+  EXPECT_NE(info["description"].get<std::string>().find("division by zero"), std::string::npos) << info;
+}
+
+// What no file has: the editor asks for its text.
+TEST_F(Dap, ABlockIsShownByItsText) {
+  plant_ = plant_of({"#include <blocks/edge.h>\nmain()\n{\n  StepEdge();\n  while (1) {}\n}\n"});
+  launch();
+  const int thread = ask("threads")["body"]["threads"][0]["id"];
+  ask("setFunctionBreakpoints", {{"breakpoints", {{{"name", "StepEdge"}}}}});
+  ask("continue", {{"threadId", thread}});
+  const Json source = ask("stackTrace", {{"threadId", thread}})["body"]["stackFrames"][0]["source"];
+  EXPECT_EQ(source["name"], "blocks/edge.h");
+  const Json text = ask("source", {{"source", source}, {"sourceReference", source["sourceReference"]}})["body"]["content"];
+  EXPECT_EQ(text.get<std::string>().find("// blocks/edge.h:"), 0U);
+  EXPECT_EQ(ask("setBreakpoints", {{"source", source}, {"breakpoints", Json::array({Json{{"line", 23}}})}})["body"]["breakpoints"][0]["verified"], true);
+  EXPECT_EQ(ask("source", {{"sourceReference", 0}})["success"], false);
+  EXPECT_EQ(ask("source", {{"sourceReference", 1000}})["success"], false);
+}
+
 TEST_F(DapOfAPlant, AFaultOfADriveStopsThePlant) {
   launch();
   const int thread = ask("threads")["body"]["threads"][0]["id"];
@@ -404,11 +462,12 @@ TEST_F(DapOfAPlant, NoTextOfAnExceptionReachesTheClient) {
   for (const char* command :
        {"setBreakpoints", "setInstructionBreakpoints", "dataBreakpointInfo", "setDataBreakpoints",
         "setExceptionBreakpoints", "setFunctionBreakpoints", "stackTrace", "scopes", "variables", "setVariable",
-        "setExpression", "evaluate", "completions", "disassemble", "next", "stepIn", "threads"})
+        "setExpression", "evaluate", "completions", "disassemble", "next", "stepIn", "threads", "source",
+        "breakpointLocations", "readMemory", "exceptionInfo"})
     for (const char* key :
          {"source", "breakpoints", "name", "variablesReference", "filters", "threadId", "frameId", "start", "count",
           "value", "expression", "text", "column", "memoryReference", "instructionCount", "instructionOffset",
-          "offset", "granularity", "format", "context"})
+          "offset", "granularity", "format", "context", "line", "endLine", "count", "sourceReference"})
       for (const Json& value : values) {
         Json arguments{{"breakpoints", Json::array({Json{{"line", value}, {"instructionReference", value},
                                                          {"name", value}, {"dataId", value}}})},

@@ -300,6 +300,34 @@ TEST(DebugScript, ObjectsHaveTheirIdentifiersAsInLogsAndPrograms) {
     EXPECT_NE(result.output.find(text), std::string::npos) << text << "\n" << result.output;
 }
 
+// Both programs of the example send every 100 ms; what was caught is forgotten with its number, and kept when time goes back.
+TEST(DebugScript, AFrameStopsThePlant) {
+  const TemporaryFolder folder;
+  const std::string input =
+      folder.write("script", "catch sbus 400#*\ncatch hello\ninfo breakpoints\nc\nrsi\nc\nd 1\nd 1\nuntil 2s\nquit\n");
+  const ScriptResult result = run_script({"/bin/sh", "-c",
+                                          fmt::format("exec 2>&1; exec '{}' debug '{}' < '{}'", ipos_program(),
+                                                      project("examples/scom/scom.toml").string(), input)});
+  for (const char* text : {"Breakpoint 1: frame sbus 400#*\n", "'hello' is no frame", "1   frame sbus 400#*\n", "Breakpoint 1: 400#",
+                           " on sbus\n", "there is no breakpoint 1\n", "(2000.000 ms"})
+    EXPECT_NE(result.output.find(text), std::string::npos) << text << "\n" << result.output;
+  const size_t first = result.output.find("Breakpoint 1: 400#");
+  EXPECT_NE(result.output.find("Breakpoint 1: 400#", first + 1), std::string::npos) << result.output;
+}
+
+TEST(DebugScript, DisplaysAreShownAtEachStop) {
+  const ScriptResult result = debug("display lCount\ndisplay /x lCount + 10\ndisplay nobody\ns\ns\nrs\nundisplay 1\nundisplay 7\ns\ndisplay\nquit\n");
+  const auto count = [&](const std::string& text) {
+    size_t n = 0;
+    for (size_t at = result.output.find(text); at != std::string::npos; at = result.output.find(text, at + 1)) ++n;
+    return n;
+  };
+  EXPECT_EQ(count("1: lCount = "), 3U) << result.output;   // at three stops; when it was made it had no number
+  EXPECT_EQ(count("2: lCount + 10 = 0x"), 5U) << result.output;
+  EXPECT_EQ(count("there is no display 7"), 1U) << result.output;
+  EXPECT_EQ(count("3: "), 0U) << result.output;
+}
+
 TEST(DebugScript, EndsWithItsInput) { EXPECT_EQ(debug("s\ns\nrs\n").exit_code, 0); }
 
 TEST(DebugScript, WrongProgramsEndIt) { EXPECT_EQ(run_ipos({"debug", "nobody.IPC"}).exit_code, 66); }

@@ -24,6 +24,8 @@ const std::vector<Console::Command>& Console::commands() {
        [](C& c, const S& a) { c.logpoint(a); }},
       {"watch", "", "VALUE [if EXPR]", "stop behind changes of a variable, parameter, input or output",
        [](C& c, const S& a) { c.watch(a); }},
+      {"catch", "", "FRAME", "stop behind the millisecond in which such a frame or telegram came: 40A#80*, sbus1 40A#*",
+       [](C& c, const S& a) { c.catch_frame(a); }},
       {"condition", "", "N [EXPR]", "change the condition of a breakpoint",
        [](C& c, const S& a) { c.condition(a); }},
       {"hits", "", "N [COUNT|>= N|% N]", "stop only at such hits", [](C& c, const S& a) { c.hits(a); }},
@@ -55,6 +57,8 @@ const std::vector<Console::Command>& Console::commands() {
       {"backtrace", "bt", "", "the calls", [](C& c, const S&) { c.backtrace(); }},
       {"list", "l", "[LINE]", "source lines", [](C& c, const S& a) { c.list(a); }},
       {"print", "p", "[/x] EXPR", "a value, a structure, an array", [](C& c, const S& a) { c.print(a); }},
+      {"display", "", "[[/x] EXPR]", "print it at each stop; without an expression: now", [](C& c, const S& a) { c.display(a); }},
+      {"undisplay", "", "[N...]", "", [](C& c, const S& a) { c.undisplay(a); }},
       {"x", "", "[/N[i|x|d]] VARIABLE|ADDRESS", "variables in a row, or commands",
        [](C& c, const S& a) { c.examine(a); }},
       {"set", "", "VALUE = EXPR", "write a variable, parameter or input", [](C& c, const S& a) { c.set(a); }},
@@ -70,9 +74,10 @@ const std::vector<Console::Command>& Console::commands() {
 
 // By name, alias, or the beginning of only one name.
 const Console::Command* Console::find(std::string_view word) {
+  for (const Command& command : commands())
+    if (command.name == word || (!command.alias.empty() && command.alias == word)) return &command;
   const Command* found = nullptr;
   for (const Command& command : commands()) {
-    if (command.name == word || (!command.alias.empty() && command.alias == word)) return &command;
     if (!command.name.starts_with(word)) continue;
     if (found != nullptr) throw ValueError(fmt::format("'{}' is {} or {}", word, found->name, command.name));
     found = &command;
@@ -125,9 +130,11 @@ void Console::go(Motion motion, bool backward, const std::string& count) {
 // After Debugger::run another process may go on, which knows nothing of locals: only members are used.
 void Console::run(const Order& order) {
   motion_ = order.motion;
+  frames_.listen(!order.backward);
   Stop stop = debugger_->run(order);
   while (more_ > 0 && stop.reason == Reason::Step) {
     --more_;
+    frames_.listen(true);
     stop = debugger_->run(debugger_->order_for(motion_, current_));
   }
   more_ = 0;
@@ -155,7 +162,9 @@ void Console::show_stop(const Stop& stop) {
   switch (stop.reason) {
     case Reason::Breakpoint: print_(fmt::format("Breakpoint {}\n", ids)); break;
     case Reason::Data: print_(fmt::format("Watchpoint {}: {}\n", ids, stop.text)); break;
-    case Reason::Pause: print_("Interrupted\n"); break;
+    case Reason::Pause:
+      print_(frames_.has_seen() ? fmt::format("Breakpoint {}: {}\n", frames_.id(), frames_.text()) : "Interrupted\n");
+      break;
     case Reason::Entry:
     case Reason::Step: break;
     case Reason::Fault:
@@ -165,6 +174,7 @@ void Console::show_stop(const Stop& stop) {
     case Reason::Beginning: print_(stop.text + "\n"); break;
   }
   show_place();
+  show_displays();
 }
 
 TaskRef Console::task_with_frames() const {
@@ -215,7 +225,8 @@ std::vector<std::string> Console::complete(std::string_view line) const {
 }
 
 Json Console::save() {
-  return {{"task", current_}, {"last", last_line_}, {"told", told_}, {"input", save_input()}};
+  return {{"task", current_},          {"last", last_line_},     {"told", told_},           {"input", save_input()},
+          {"frames", frames_.save()}, {"displays", displays_}, {"display", last_display_}};
 }
 
 void Console::load(const Json& state) {
@@ -223,6 +234,9 @@ void Console::load(const Json& state) {
   last_line_ = state["last"].get<std::string>();
   more_ = 0;
   told_ = state["told"];
+  frames_.load(state["frames"]);
+  displays_ = state["displays"].get<std::vector<std::pair<int, std::string>>>();
+  last_display_ = state["display"];
   load_input(state["input"]);
 }
 

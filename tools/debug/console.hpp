@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tools/debug/frame_points.hpp"
 #include "tools/debugger/debugger.hpp"
 
 namespace ipos::tools::debug {
@@ -31,7 +32,8 @@ class Console final : public FrontEnd {
 
   Json save() override;
   void load(const Json& state) override;
-  bool keep_going() override { return not_interrupted(); }
+  bool keep_going() override { return !frames_.has_seen() && not_interrupted(); }
+  void built(runtime::Plant& plant) override { frames_.built(plant); }
   void output(const std::string& text) override { print_(text); }
 
  private:
@@ -48,6 +50,10 @@ class Console final : public FrontEnd {
   void breakpoint(const std::string& arguments, bool temporary);
   void logpoint(const std::string& arguments);
   void watch(const std::string& arguments);
+  void catch_frame(const std::string& arguments);
+  void display(const std::string& arguments);
+  void undisplay(const std::string& arguments);
+  void show_displays();
   void condition(const std::string& arguments);
   void hits(const std::string& arguments);
   void remove(const std::string& arguments);
@@ -88,6 +94,9 @@ class Console final : public FrontEnd {
   uint32_t listed_ = 0;  // line after the last one listed
   size_t told_ = 0;      // entries of the journal
   std::map<std::string, std::vector<std::string>> sources_;
+  FramePoints frames_;
+  std::vector<std::pair<int, std::string>> displays_;  // number; arguments of print
+  int last_display_ = 0;
 };
 
 }  // namespace ipos::tools::debug

@@ -104,6 +104,13 @@ void Console::watch(const std::string& arguments) {
                      value_text(place)));
 }
 
+void Console::catch_frame(const std::string& arguments) {
+  if (!FramePoints::is_frame(debugger_->plant(), arguments))
+    throw ValueError(fmt::format("'{}' is no frame such as 40A#80*, sbus1 40A#* or 02 01 *", arguments));
+  frames_.add(debugger_->next_id(), arguments);
+  print_(fmt::format("Breakpoint {}: frame {}\n", frames_.all().back().first, arguments));
+}
+
 void Console::condition(const std::string& arguments) {
   std::istringstream in(arguments);
   int id = 0;
@@ -138,12 +145,13 @@ void Console::remove(const std::string& arguments) {
   if (arguments.empty()) {
     debugger_->breakpoints().clear();
     debugger_->watchpoints().clear();
+    frames_.clear();
     return;
   }
   std::istringstream in(arguments);
   for (int id = 0; in >> id;) {
     const auto same = [id](const auto& point) { return point.id == id; };
-    if (std::erase_if(debugger_->breakpoints(), same) + std::erase_if(debugger_->watchpoints(), same) == 0)
+    if (std::erase_if(debugger_->breakpoints(), same) + std::erase_if(debugger_->watchpoints(), same) == 0 && !frames_.remove(id))
       throw ValueError(fmt::format("there is no breakpoint {}", id));
   }
 }
@@ -198,6 +206,7 @@ void Console::info_breakpoints() {
                        point.condition.empty() ? "" : " if " + point.condition,
                        point.hit_condition.empty() ? "" : " at hits " + point.hit_condition, point.hits,
                        point.enabled ? "" : ", disabled"));
+  for (const auto& [id, pattern] : frames_.all()) print_(fmt::format("{:<3} frame {}\n", id, pattern));
 }
 
 }  // namespace ipos::tools::debug

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <sstream>
 
 #include "tools/cli/text_lines.hpp"
 #include "tools/debug/console.hpp"
@@ -73,6 +74,32 @@ void Console::print(const std::string& arguments) {
     if (const auto place = find_value(plant, current_.station, text))
       return print_(fmt::format("{} = {}\n", text, value_text(*place)));
   print_(fmt::format("{} = {}\n", text, number_text(evaluate(plant, current_.station, text), hex)));
+}
+
+// What cannot be shown where the plant stands, say a name of another station, is told and stays.
+void Console::show_displays() {
+  for (const auto& [number, text] : displays_) {
+    print_(fmt::format("{}: ", number));
+    try {
+      print(text);
+    } catch (const ValueError& error) {
+      print_(fmt::format("{}\n", error.what()));
+    }
+  }
+}
+
+void Console::display(const std::string& arguments) {
+  if (arguments.empty()) return show_displays();
+  print(arguments);
+  displays_.emplace_back(++last_display_, arguments);
+}
+
+void Console::undisplay(const std::string& arguments) {
+  if (arguments.empty()) return displays_.clear();
+  std::istringstream in(arguments);
+  for (std::string word; in >> word;)
+    if (std::erase_if(displays_, [&word](const auto& one) { return std::to_string(one.first) == word; }) == 0)
+      throw ValueError(fmt::format("there is no display {}", word));
 }
 
 // "x/8 H420", "x/4i 12".

@@ -66,6 +66,9 @@ const std::vector<DapServer::Request>& DapServer::requests() {
       {"completions", &S::completions},
       {"restart", &S::restart},
       {"disassemble", &S::disassemble},
+      {"breakpointLocations", &S::breakpoint_locations},
+      {"exceptionInfo", &S::exception_info},
+      {"readMemory", &S::read_memory},
       {"continue", &S::resume},
       {"next", &S::next},
       {"stepIn", &S::step_in},
@@ -143,8 +146,7 @@ void DapServer::go() {
   const Order order = *order_;
   order_.reset();
   began_ = std::chrono::steady_clock::now();
-  forward_ = !order.backward;
-  frame_seen_.clear();
+  frames_.listen(!order.backward);
   report(debugger_->run(order));
 }
 
@@ -169,11 +171,12 @@ void DapServer::report(const Stop& stop) {
     return std::find(fault_points_.begin(), fault_points_.end(), id) != fault_points_.end();
   };
   if (std::any_of(ids.begin(), ids.end(), is_fault)) reason = "exception";
-  if (stop.reason == Reason::Pause && !frame_seen_.empty()) {
+  if (stop.reason == Reason::Pause && frames_.has_seen()) {
     reason = "function breakpoint";
-    text = frame_seen_;
-    ids.push_back(frame_id_);
+    text = frames_.text();
+    ids.push_back(frames_.id());
   }
+  fault_ = reason == "exception" ? text : "";
   // Virtual time, which no editor has a place for.
   const std::string time = fmt::format("{:.3f} ms", static_cast<double>(debugger_->plant().now()) / 1e6);
   Json body{{"reason", reason},
@@ -204,7 +207,7 @@ bool DapServer::keep_going() {
     queue_.erase(next);
     answer(message);
   }
-  return frame_seen_.empty() && !stop_is_asked();
+  return !frames_.has_seen() && !stop_is_asked();
 }
 
 // What ends this run, the end of the input at last, stands in the queue in front of the next order; what stands after one is meant for that. If this
@@ -216,26 +219,11 @@ bool DapServer::stop_is_asked() const {
          std::chrono::steady_clock::now() - began_ > kLongestWait;
 }
 
-void DapServer::built(runtime::Plant& plant) {
-  for (const auto& bus : plant.buses()) bus->add_observer(*this);
-}
-
-// What comes while time goes back has been seen before.
-void DapServer::on_message(const runtime::Bus& bus, const runtime::BusMessage& message) {
-  if (!forward_ || !frame_seen_.empty()) return;
-  for (const auto& [id, pattern] : frame_points_)
-    if (signals::matches(pattern, message.text) ||
-        signals::matches(pattern, bus.name() + " " + message.text)) {
-      frame_id_ = id;
-      frame_seen_ = fmt::format("{} on {}", message.text, bus.name());
-    }
-}
-
 Json DapServer::save() {
   Json sources = Json::array();
   for (const auto& [id, source] : sources_) sources.push_back({id, source.first, source.second});
   return {{"seq", seq_},        {"told", told_},         {"queue", queue_}, {"faults", fault_points_},
-          {"sources", sources}, {"input", save_input()}, {"frames", frame_points_},
+          {"sources", sources}, {"input", save_input()}, {"frames", frames_.save()},
           {"functions", function_points_}, {"closed", closed_}};
 }
 
@@ -247,7 +235,7 @@ void DapServer::load(const Json& state) {
   closed_ = state["closed"];
   function_points_ = state["functions"].get<std::vector<int>>();
   fault_points_ = state["faults"].get<std::vector<int>>();
-  frame_points_ = state["frames"].get<std::vector<std::pair<int, std::string>>>();
+  frames_.load(state["frames"]);
   order_.reset();
   sources_.clear();
   for (const Json& source : state["sources"])
@@ -280,7 +268,8 @@ Json DapServer::initialize(const Json& arguments) {
         "supportsStepBack", "supportsSetVariable", "supportsSetExpression", "supportsDataBreakpoints",
         "supportsDisassembleRequest", "supportsInstructionBreakpoints", "supportsSteppingGranularity",
         "supportsTerminateRequest", "supportsRestartRequest", "supportsCompletionsRequest",
-        "supportsValueFormattingOptions"})
+        "supportsValueFormattingOptions", "supportsBreakpointLocationsRequest", "supportsExceptionInfoRequest",
+        "supportsReadMemoryRequest"})
     can[word] = true;
   can["exceptionBreakpointFilters"] =
       Json::array({{{"filter", "fault"}, {"label", "Faults of drives"}, {"default", true}}});

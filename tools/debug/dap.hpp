@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/debug/frame_points.hpp"
 #include "tools/debugger/debugger.hpp"
 
 namespace ipos::tools::debug {
@@ -23,7 +24,7 @@ struct DapLaunch {
   std::string test_case;  // of a test that has several
 };
 
-class DapServer final : public FrontEnd, private runtime::BusObserver {
+class DapServer final : public FrontEnd {
  public:
   using Make = std::function<Debuggee(const DapLaunch&)>;  // may throw
   using Send = std::function<void(const Json&)>;
@@ -47,7 +48,7 @@ class DapServer final : public FrontEnd, private runtime::BusObserver {
   void load(const Json& state) override;
   bool keep_going() override;
   void output(const std::string& text) override;
-  void built(runtime::Plant& plant) override;
+  void built(runtime::Plant& plant) override { frames_.built(plant); }
 
  private:
   using Handler = Json (DapServer::*)(const Json& arguments);
@@ -74,6 +75,9 @@ class DapServer final : public FrontEnd, private runtime::BusObserver {
   Json set_expression(const Json& arguments);
   Json evaluate_text(const Json& arguments);
   Json disassemble(const Json& arguments);
+  Json breakpoint_locations(const Json& arguments);
+  Json exception_info(const Json& arguments);
+  Json read_memory(const Json& arguments);
   Json resume(const Json& arguments);
   Json next(const Json& arguments);
   Json step_in(const Json& arguments);
@@ -94,7 +98,6 @@ class DapServer final : public FrontEnd, private runtime::BusObserver {
   Debugger& debugger();
   TaskRef task_of(const Json& arguments, const char* key) const;
   Json breakpoint_json(const Breakpoint& breakpoint) const;
-  bool is_frame(std::string_view name) const;
   std::optional<ValuePlace> place_of_data(const std::string& id);
 
   // As the editor counts (initialize), and as ipos does: from 1.
@@ -120,7 +123,6 @@ class DapServer final : public FrontEnd, private runtime::BusObserver {
   Json whole_json(const Whole& whole, bool hex);
   Json set_value(const ValuePlace& place, uint32_t station, const Json& arguments);
   uint32_t station_of_frame(const Json& arguments);
-  void on_message(const runtime::Bus& bus, const runtime::BusMessage& message) override;
 
   Make make_;
   Send send_;
@@ -138,11 +140,8 @@ class DapServer final : public FrontEnd, private runtime::BusObserver {
   std::map<int, std::pair<std::string, uint32_t>> sources_;  // of source breakpoints: file, line asked for
   std::vector<int> function_points_;                         // breakpoints by the name of a function
   std::vector<int> fault_points_;                            // watchpoints on the faults of drives
-  // Frames to stop at, as their text or after the name of their bus; while time goes on.
-  std::vector<std::pair<int, std::string>> frame_points_;
-  bool forward_ = false;
-  int frame_id_ = 0;        // of the frame that has come
-  std::string frame_seen_;  // in words; empty: none has
+  FramePoints frames_;
+  std::string fault_;  // that stopped the plant, in words; empty: another reason did
 
   // What the editor may ask for by number until the next stop.
   struct Reference {

@@ -160,7 +160,7 @@ Json DapServer::set_function_breakpoints(const Json& arguments) {
     return std::find(function_points_.begin(), function_points_.end(), point.id) != function_points_.end();
   });
   function_points_.clear();
-  frame_points_.clear();
+  frames_.clear();
   Json answer = Json::array();
   for (const Json& asked : arguments.value("breakpoints", Json::array())) {
     const auto name = asked.at("name").get<std::string>();
@@ -174,9 +174,9 @@ Json DapServer::set_function_breakpoints(const Json& arguments) {
       function_points_.push_back(all.back().id);
       if (shown.is_null()) shown = breakpoint_json(all.back());
     }
-    if (shown.is_null() && is_frame(name)) {
-      frame_points_.emplace_back(debugger_->next_id(), name);
-      shown = {{"id", frame_points_.back().first}, {"verified", true}};
+    if (shown.is_null() && FramePoints::is_frame(debugger_->plant(), name)) {
+      frames_.add(debugger_->next_id(), name);
+      shown = {{"id", frames_.all().back().first}, {"verified", true}};
     }
     if (shown.is_null())
       shown = {{"verified", false},
@@ -186,13 +186,30 @@ Json DapServer::set_function_breakpoints(const Json& arguments) {
   return {{"breakpoints", answer}};
 }
 
-// Whether a frame or telegram of a bus of the plant can look so: digits, # and wildcards, with a digit or # among them.
-bool DapServer::is_frame(std::string_view name) const {
-  for (const auto& bus : debugger_->plant().buses())
-    if (name.starts_with(bus->name() + " ")) name.remove_prefix(bus->name().size() + 1);
-  constexpr std::string_view kDigits = "0123456789ABCDEF#";
-  return !debugger_->plant().buses().empty() && name.find_first_of(kDigits) != std::string_view::npos &&
-         name.find_first_not_of("0123456789ABCDEF#R*? ") == std::string_view::npos;
+// The lines from `line` to `endLine` at which a command begins, in any station.
+Json DapServer::breakpoint_locations(const Json& arguments) {
+  constexpr uint32_t kMostLines = 10'000;
+  const Json& source = arguments.at("source");
+  const std::string asked = source.value("path", source.value("name", ""));
+  const std::string file = uris_ ? lsp::path_of(asked) : asked;
+  const uint32_t first = line_of_client(arguments.at("line"));
+  const uint32_t last = arguments.contains("endLine") ? line_of_client(arguments["endLine"]) : first;
+  Json all = Json::array();
+  for (uint32_t line = first; line <= last && line - first < kMostLines; ++line)
+    for (uint32_t station = 0; station < debugger().plant().stations().size(); ++station) {
+      const CodeMap* code = debugger_->code(station);
+      const auto address = code == nullptr ? std::nullopt : code->address_of(file, line);
+      if (!address || code->place(*address).line != line) continue;
+      all.push_back({{"line", line_for_client(line)}, {"column", column_for_client(code->place(*address).column)}});
+      break;
+    }
+  return {{"breakpoints", all}};
+}
+
+// "F10: division by zero" and where it was.
+Json DapServer::exception_info(const Json&) {
+  if (fault_.empty()) throw ValueError("no fault has stopped the plant");
+  return {{"exceptionId", fault_.substr(0, fault_.find(':'))}, {"description", fault_}, {"breakMode", "always"}};
 }
 
 }  // namespace ipos::tools::debug

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 
 #include "runtime/signals/find.hpp"
 #include "tools/debug/dap.hpp"
@@ -13,6 +14,19 @@ namespace {
 enum Scope : int { Named, Numbers, Parameters, Io, ProcessData, SbusObjects, Elements };
 constexpr const char* kScopes[] = {"Variables",    "H",           "Parameters", "Inputs and outputs",
                                    "Process data", "SBus objects"};
+
+constexpr int64_t kMostBytes = 65'536;  // of one request
+
+std::string base64(const std::vector<uint8_t>& bytes) {
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (size_t n = 0; n < bytes.size(); n += 3) {
+    uint32_t three = 0;
+    for (size_t k = 0; k < 3; ++k) three = three << 8U | (n + k < bytes.size() ? bytes[n + k] : 0U);
+    for (size_t k = 0; k < 4; ++k) text += n + k > bytes.size() ? '=' : kDigits[three >> (18 - 6 * k) & 63U];
+  }
+  return text;
+}
 
 bool wants_hex(const Json& arguments) {
   const auto format = arguments.find("format");
@@ -42,10 +56,32 @@ Json DapServer::scopes(const Json& arguments) {
 }
 
 Json DapServer::value_json(const ValuePlace& place, bool hex) const {
-  return {{"name", place.name},
-          {"value", value_text(place, hex)},
-          {"evaluateName", place.name},
-          {"variablesReference", 0}};
+  Json json{{"name", place.name},
+            {"value", value_text(place, hex)},
+            {"evaluateName", place.name},
+            {"variablesReference", 0}};
+  if (place.signal->is_variable()) json["memoryReference"] = fmt::format("{}:H{}", place.station, place.signal->number);
+  return json;
+}
+
+// The H variables of a station from "0:H420" on, four bytes each, the lowest one first.
+Json DapServer::read_memory(const Json& arguments) {
+  const auto reference = arguments.at("memoryReference").get<std::string>();
+  size_t station = 0, first = 0;
+  int length = 0;
+  if (std::sscanf(reference.c_str(), "%zu:H%zu%n", &station, &first, &length) != 2 || static_cast<size_t>(length) != reference.size() ||
+      station >= debugger().plant().stations().size() || first >= debugger_->plant().stations()[station]->config().unit->variables)
+    throw ValueError("there is no memory of this name");
+  const runtime::Station& unit = *debugger_->plant().stations()[station];
+  const int64_t end = int64_t{4} * unit.config().unit->variables;
+  const int64_t begin = int64_t{4} * static_cast<int64_t>(first) + std::clamp<int64_t>(arguments.value("offset", int64_t{0}), -end, end);
+  const int64_t count = std::clamp<int64_t>(arguments.at("count").get<int64_t>(), 0, kMostBytes);
+  std::vector<uint8_t> bytes;
+  int64_t at = std::clamp<int64_t>(begin, 0, end);
+  if (at == begin)
+    for (; at < std::min(begin + count, end); ++at)
+      bytes.push_back(static_cast<uint8_t>(static_cast<uint32_t>(unit.variable(static_cast<uint32_t>(at / 4))) >> (at % 4 * 8)));
+  return {{"address", fmt::format("{}", at)}, {"data", base64(bytes)}, {"unreadableBytes", count - static_cast<int64_t>(bytes.size())}};
 }
 
 Json DapServer::scope_values(uint32_t station, int scope, bool hex) const {
