@@ -19,7 +19,7 @@ endfunction()
 
 bus_layer(line SOURCES line_load.cpp)
 bus_layer(can
-  SOURCES identifier_text.cpp bit_error.cpp line_fault.cpp line_wiring.cpp line_repeats.cpp line_report.cpp
+  SOURCES identifier_text.cpp bit_error.cpp clash.cpp line_fault.cpp line_strangers.cpp line_wiring.cpp line_repeats.cpp line_report.cpp
   HOT frame_bits.cpp transfer.cpp line.cpp contenders.cpp
   USES bus_line clock)
 bus_layer(rs485 SOURCES levels.cpp HOT line.cpp USES bus_line clock)

@@ -56,7 +56,8 @@ class CableCheck {
       find(FindingKind::SwappedWires, fmt::format("{} {}", whose, type.text));
     else if (config.fault.behind)
       find(FindingKind::CableFault, fmt::format("the line {} behind {}", type.text, whose));
-    else if (type.scope == FaultScope::Wiring || config.fault.kind == FaultKind::Terminator)
+    else if (type.scope == FaultScope::Wiring || config.fault.kind == FaultKind::Terminator ||
+             config.fault.kind == FaultKind::Length)
       find(FindingKind::CableFault, fmt::format("{} {}", whose, type.text));
   }
 

@@ -74,6 +74,7 @@ BusPlan make_plan(Plant& plant, const PlanOptions& options) {
   plant.add_observer(watcher);
   SerialWatcher serial_watcher;
   plant.add_observer(serial_watcher);
+  plant.calm_lines();
   plant.run_until(options.trial);
 
   BusPlan plan;

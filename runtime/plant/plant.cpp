@@ -10,6 +10,7 @@
 #include "runtime/bus/log/log_name.hpp"
 #include "runtime/nv_memory/medium/file_medium.hpp"
 #include "runtime/plant/start_checks.hpp"
+#include "runtime/plant_file/line_disturbance.hpp"
 #include "runtime/plant_file/serial_plan.hpp"
 #include "runtime/plant_file/state_names.hpp"
 #include "runtime/signals/find.hpp"
@@ -73,6 +74,7 @@ Plant::Plant(PlantFile file, std::vector<std::optional<vm::Image>> programs, std
   tell_findings(*this, journal_);
   power_on();
   check_nodes(*this, journal_);
+  disturb_lines();
   plant_faults();
 }
 
@@ -113,6 +115,27 @@ void Plant::power_on() {
     station->power_on();
   }
   for (; control != controls_.end(); ++control) (*control)->start();
+}
+
+// What the file says of a line is as good as a fault from the start; the journal has told what is wrong.
+void Plant::disturb_lines() {
+  for (const auto& bus : buses_)
+    for (const LineDisturbance& disturbance : line_disturbances(file_, bus->config())) {
+      WantedFault wanted{disturbance.fault};
+      wanted.per_mille = disturbance.per_mille;
+      wanted.of_line = true;
+      FaultConfig fault = bus->make_fault(wanted);
+      bus->plant(fault);
+      fault.bus = bus->name();
+      of_lines_.push_back(std::move(fault));
+      journal_.note(queue_.now(), Weight::Warning, "",
+                    fmt::format("{}: {}: {} of 1000 {}s are disturbed (how many is a choice of ipos)", bus->name(),
+                                disturbance.cause, disturbance.per_mille, info(bus->kind()).message));
+    }
+}
+
+void Plant::calm_lines() {
+  for (const FaultConfig& fault : of_lines_) repair_fault(fault);
 }
 
 void Plant::plant_faults() {

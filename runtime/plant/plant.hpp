@@ -65,6 +65,8 @@ class Plant final : public PlantParts {
   bool plant_fault(const FaultConfig& config);
   // Ends what was planted with the same bus, station, kind and identifier; false: there is no such fault.
   bool repair_fault(const FaultConfig& config);
+  // Before the first event: what the file says of the lines disturbs no frame. For a plan, which wants to see them all.
+  void calm_lines();
 
   const PlantFile& file() const { return file_; }
   std::vector<std::unique_ptr<Station>>& stations() { return stations_; }
@@ -88,6 +90,7 @@ class Plant final : public PlantParts {
   void add_station(size_t number, std::optional<vm::Image> program, std::optional<vm::Rates> rates,
                    std::vector<PlantError>& errors, const Execution& execution);
   void power_on();
+  void disturb_lines();
   void plant_faults();
   void check_expectations(Time until);
   void resolve_expectations(std::vector<PlantError>& errors);
@@ -97,6 +100,7 @@ class Plant final : public PlantParts {
   uint32_t next_source_ = 0;
   Journal journal_;
   std::deque<BusConfig> keypads_;  // lines that are not in the file
+  std::vector<FaultConfig> of_lines_;  // that the file says of them without a [[fault]]
   std::vector<std::unique_ptr<Bus>> buses_;
   std::unique_ptr<Machines> machines_;
   std::unique_ptr<Surroundings> surroundings_;

@@ -47,6 +47,19 @@ void read_fault_choice(PlantReader& reader, const toml::table& table, LineFault&
                  "a fault strikes the n-th frame, or a rate of them: not both");
 }
 
+// What its station is set to.
+void read_fault_baud(PlantReader& reader, const toml::table& table, FaultConfig& config) {
+  const toml::node* node = table.get("baud");
+  if ((node != nullptr) != (config.fault.kind == FaultKind::Baud))
+    return reader.error(config.place, "baud = ... belongs to kind = \"baud\", and there it must be");
+  int32_t rate = 0;
+  if (node == nullptr || !reader.number(*node, "baud", rate)) return;
+  const auto& rates = info(BusKind::Can).rates;
+  config.fault.baud = static_cast<uint32_t>(rate);
+  if (std::find(rates.begin(), rates.end(), config.fault.baud) == rates.end())
+    reader.error(place_of(*node), fmt::format("a CAN station has {} baud, not {}", fmt::join(rates, ", "), rate));
+}
+
 }  // namespace
 
 void read_fault(PlantReader& reader, const toml::table& table) {
@@ -58,7 +71,7 @@ void read_fault(PlantReader& reader, const toml::table& table) {
     return read_profibus_fault(reader, table);
   reader.known_keys(
       table, "[[fault]]",
-      {"bus", "kind", "station", "behind", "id", "frame", "rate", "seed", "from", "until", "delay"});
+      {"bus", "kind", "station", "behind", "id", "frame", "rate", "seed", "from", "until", "delay", "baud"});
   FaultConfig config;
   config.place = place_of(table.source());
   config.bus = reader.bus_name(table, "bus", "a [[fault]]", true);
@@ -80,6 +93,7 @@ void read_fault(PlantReader& reader, const toml::table& table) {
   config.fault.lag = reader.duration(table, "delay", 0);
   if (table.contains("delay") != (type->kind == FaultKind::Delay))
     reader.error(config.place, "delay = ... belongs to kind = \"delay\", and there it must be");
+  read_fault_baud(reader, table, config);
   if (config.fault.from >= 0 && config.fault.until >= 0 && config.fault.until <= config.fault.from)
     reader.error(config.place, "until must be after from");
   reader.result.plant.faults.push_back(std::move(config));

@@ -74,6 +74,7 @@ struct WantedFault {
   Time from = 0;
   uint32_t per_mille = 1000;
   std::optional<uint32_t> id{};
+  bool of_line = false;  // nobody plants it: the data of the line say it
 };
 
 // What a line is made of.

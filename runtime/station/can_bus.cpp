@@ -105,7 +105,9 @@ FaultConfig CanBus::make_fault(const WantedFault& wanted) const {
   config.fault.per_mille = wanted.per_mille;
   config.fault.from = wanted.from;
   config.fault.id = wanted.id;
+  config.fault.of_line = wanted.of_line;
   if (config.fault.kind == FaultKind::Delay) config.fault.lag = kMillisecond;
+  if (config.fault.kind == FaultKind::Baud) config.fault.baud = baud() == kBaudRates[0] ? kBaudRates[1] : baud() / 2;
   return config;
 }
 

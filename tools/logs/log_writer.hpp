@@ -30,6 +30,9 @@ class PlantLog final : private runtime::CanObserver,
 
  private:
   void on_frame(const runtime::CanLine& line, const runtime::FrameRecord& record) override;
+  void on_error_frame(const runtime::CanLine& line, const runtime::ErrorRecord& record) override {
+    writer_.can_error(line, record);
+  }
   void on_line_event(const runtime::CanLine&, const runtime::LineEvent&) override {}
   void on_character(const runtime::Rs485Line& line, runtime::NodeId sender,
                     const runtime::Character& character) override;

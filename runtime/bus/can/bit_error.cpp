@@ -6,8 +6,6 @@
 namespace ipos::runtime {
 namespace {
 
-constexpr uint32_t kTailBits = 10;  // CRC delimiter, acknowledge slot and delimiter, end of frame
-
 uint32_t crc_delimiter(const WireBits& bits) { return bits.count - kTailBits; }
 
 // The header of a frame as a receiver reads it, bit by bit without stuff bits: how many bits it has in all.

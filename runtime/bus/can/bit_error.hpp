@@ -10,6 +10,7 @@ namespace ipos::runtime {
 
 inline constexpr uint32_t kErrorFlagBits = 6;
 inline constexpr uint32_t kErrorDelimiterBits = 8;
+inline constexpr uint32_t kTailBits = 10;  // CRC delimiter, acknowledge slot and delimiter, end of frame
 
 // Bits that a fault disturbs: after the arbitration field, where a bit error would only lose the
 // arbitration, up to the end of the CRC.

@@ -33,6 +33,7 @@ NodeId CanLine::attach(std::string name, uint32_t baud, CanNode& node) {
   if (!nodes_.empty()) added.segment = nodes_.back().segment;
   wire(added);
   nodes_.push_back(std::move(added));
+  if (is_stranger(nodes_.back())) strangers_.push_back(id);
   nodes_.back().queue.reserve(kSendQueueLimit);
   contenders_.grow(nodes_.size());
   winners_.reserve(nodes_.size());
@@ -52,14 +53,14 @@ SendStatus CanLine::send(NodeId node, const Frame& frame, uint64_t tag, bool ove
   assert(node < nodes_.size());
   Node& n = nodes_[node];
   if (!is_valid(frame)) return SendStatus::InvalidFrame;
-  if (!is_active(n)) return SendStatus::NotActive;
+  if (!takes_bus(n)) return SendStatus::NotActive;
   wake();
   const uint64_t ready = static_cast<uint64_t>(queue_.now() / bit_time_) + 1;
   const uint32_t key = arbitration_key(frame);
   const uint64_t wanted = std::max(ready, n.suspended_until);
   if (n.queue.empty()) {
     n.queue.emplace_back(frame, tag, ready, key);
-    contenders_.join(node, wanted, key);
+    if (n.wired) contenders_.join(node, wanted, key);
   } else if (overtakes) {
     withdraw(node, tag);
     return send(node, frame, tag);
@@ -114,7 +115,7 @@ uint64_t CanLine::next_ready(const Node& node) const {
 // Queue or pause of the node are other ones.
 void CanLine::queue_changed(NodeId id) {
   const Node& node = nodes_[id];
-  if (node.queue.empty()) return contenders_.remove(id);
+  if (node.queue.empty() || !node.wired) return contenders_.remove(id);
   const Pending& first = node.queue.front();
   contenders_.put(id, std::max(first.ready_bit, node.suspended_until), first.key);
 }
@@ -125,10 +126,10 @@ void CanLine::schedule_start() {
 
 // The first bit at which somebody can send; kNoBit: nobody.
 inline uint64_t CanLine::next_start(uint32_t number) const {
-  if (stuck_ != 0 || rewire_ || contenders_.empty()) return kNoBit;
+  if (stuck_ != 0 || rewire_ || (contenders_.empty() && strangers_.empty())) return kNoBit;
   const uint64_t free_bit = segments_[number].free_bit;
-  if (segments_.size() == 1 && contenders_.all_ready(free_bit)) return free_bit;
-  uint64_t bit = kNoBit;
+  if (segments_.size() == 1 && !contenders_.empty() && contenders_.all_ready(free_bit)) return free_bit;
+  uint64_t bit = strangers_.empty() ? kNoBit : next_stranger(number);
   contenders_.each([&](NodeId id) {
     if (nodes_[id].segment == number) bit = std::min(bit, next_ready(nodes_[id]));
   });
@@ -219,7 +220,7 @@ void CanLine::note_plain(NodeId id, const Frame& frame, uint64_t tag, uint64_t b
 // A line without planted faults has one segment.
 bool CanLine::find_sound() {
   const auto active = [](const Node& node) { return is_active(node); };
-  sound_ = faults_.empty() && !recovering_ && std::count_if(nodes_.begin(), nodes_.end(), active) > 1;
+  sound_ = faults_.empty() && strangers_.empty() && !recovering_ && std::count_if(nodes_.begin(), nodes_.end(), active) > 1;
   return sound_;
 }
 
@@ -338,6 +339,9 @@ bool CanLine::begin_transfer(uint32_t number, uint64_t bit) {
   Segment& segment = segments_[number];
   Transfer& transfer = segment.transfer;
   transfer.plain = false;
+  transfer.flagged = transfer.mute = false;
+  transfer.stranger = kNoNode;
+  transfer.stranger_waits = transfer.others_wait = false;
   assert(!segment.busy());
   transfer.start_bit = bit;
   transfer.senders.clear();
@@ -364,9 +368,20 @@ bool CanLine::begin_transfer(uint32_t number, uint64_t bit) {
     for (const NodeId id : winners_) send(id);
     winners_.clear();
   }
-  if (transfer.senders.empty()) return false;
+  const bool carried = !transfer.senders.empty();
+  if (!carried && (strangers_.empty() || !stranger_sends(number, bit))) return false;
   pause_recovery(number, bit);
-  if (!faults_.empty()) transfer.fault = faults_.strike(queue_.now(), transfer.senders.front().frame.id);
+  if (!faults_.empty() && carried) transfer.fault = faults_.strike(queue_.now(), transfer.senders.front().frame.id);
+  const Listeners listeners = listeners_of(number);
+  if (carried) resolve(transfer, listeners, known_, shorts_ > 0);
+  if (!strangers_.empty() && shorts_ == 0) meet_strangers(number, bit, listeners);
+  segment.start_bit = kBusy;
+  return true;
+}
+
+// Who hears the frame that begins, and whose flag counts.
+Listeners CanLine::listeners_of(uint32_t number) const {
+  const Transfer& transfer = segments_[number].transfer;
   Listeners listeners;
   for (NodeId id = 0; id < nodes_.size(); ++id) {
     if (listeners.error_active && !transfer.fault.kind) break;  // no other listener makes a difference
@@ -381,9 +396,7 @@ bool CanLine::begin_transfer(uint32_t number, uint64_t bit) {
       listeners.others = true;
     }
   }
-  resolve(transfer, listeners, known_, shorts_ > 0);
-  segment.start_bit = kBusy;
-  return true;
+  return listeners;
 }
 
 void CanLine::end_transfer(Time now, uint32_t number) {
@@ -399,8 +412,9 @@ void CanLine::end_transfer(Time now, uint32_t number) {
   // not begun.
   if (transfer.fault.kind)
     report({LineEventKind::FaultStrikes, now, transfer.fault.node, kNoNode, transfer.winner().frame.id,
-            static_cast<uint8_t>(*transfer.fault.kind)});
+            static_cast<uint8_t>(*transfer.fault.kind), 1, transfer.fault.of_line});
   if (transfer.received()) report_frame(record);
+  if (transfer.flagged) report_error(record, transfer.outcome == Transfer::Outcome::NoAcknowledge);
   known_.stir_all(transfer.winner().frame);
   if (transfer.received() && transfer.fault.is(FaultKind::Delay)) {
     late_.push_back(LateFrame{transfer.winner().frame, transfer.winner().node, transfer.fault.node, number});
@@ -415,6 +429,7 @@ void CanLine::end_transfer(Time now, uint32_t number) {
       erring_.put(id, nodes_[id].counters.receive != 0);
     }
   }
+  if (!strangers_.empty()) settle_strangers(now, number);
   for (const Transfer::Sender& sender : transfer.senders) settle_sender(now, segment, sender);
   settle_line();
 }
@@ -425,11 +440,12 @@ void CanLine::deliver(Time now, const Segment& segment, NodeId listener) {
   const FrameFault& fault = transfer.fault;
   Node& node = nodes_[listener];
   const bool concerned = fault.kind && (fault.node == kNoNode || fault.node == listener);
-  const bool disturbed = fault.is(FaultKind::Corrupt) || fault.is(FaultKind::Terminator);
+  const bool disturbed = fault.disturbs_a_bit();
   const ErrorState before = node.counters.state();
-  if (transfer.outcome == Transfer::Outcome::NoLevel) return;  // it hears nothing
+  if (transfer.outcome == Transfer::Outcome::NoLevel || transfer.mute) return;  // it hears nothing
   if (!transfer.received() || (disturbed && concerned)) {
-    node.counters.receive_failed(fault.node == listener && before == ErrorState::Active);
+    const bool first = fault.node == listener || transfer.others_wait;
+    node.counters.receive_failed(first && before == ErrorState::Active);
     return count_error_state(now, listener, before);
   }
   node.counters.received();
@@ -463,7 +479,7 @@ void CanLine::settle_sender(Time now, const Segment& segment, const Transfer::Se
   } else if (transfer.outcome == Outcome::NoAcknowledge && !sender.lost) {
     reason = NotSent::NoAcknowledge;
     node.counters.not_acknowledged();
-    const bool told = std::exchange(node.unacknowledged, true);
+    const bool told = std::exchange(node.unacknowledged, true) || !node.wired;
     if (!told && partner == kNoNode)
       report({LineEventKind::NoAcknowledge, now, sender.node, kNoNode, sender.frame.id});
     else if (!told && sender.node == transfer.winner().node)

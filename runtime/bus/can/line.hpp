@@ -39,8 +39,8 @@ class CanLine final : private EventTarget {
   CanLine(EventQueue& queue, uint32_t source, std::string name, uint32_t baud);
 
   // Nodes are attached before the first event runs, in the order in which they sit on the cable; one that comes
-  // later, between two events, is plugged in at its end. A node of another rate takes no part, and the observers
-  // hear why.
+  // later, between two events, is plugged in at its end. A node of another rate understands nobody and destroys the
+  // frames of the others, and the observers hear why.
   NodeId attach(std::string name, uint32_t baud, CanNode& node);
   void add_observer(CanObserver& observer);
   void add_observer(LineObserver& observer);
@@ -89,7 +89,7 @@ class CanLine final : private EventTarget {
   Time bit_time() const { return bit_time_; }
   size_t node_count() const { return nodes_.size(); }
   const std::string& node_name(NodeId node) const { return nodes_[node].name; }
-  uint32_t node_baud(NodeId node) const { return nodes_[node].baud; }
+  uint32_t node_baud(NodeId node) const { return nodes_[node].rate(); }
   const ErrorCounters& counters(NodeId node) const { return nodes_[node].counters; }
   bool is_active(NodeId node) const {  // right rate, connected, not bus-off
     return is_active(nodes_[node]);
@@ -124,10 +124,14 @@ class CanLine final : private EventTarget {
 
     bool connected = true;
     bool swapped = false;  // high and low interchanged
+    bool told_stranger = false;
     uint32_t baud = 0;
+    uint32_t fault_baud = 0;  // of a planted fault, in place of its own; 0: none
     uint64_t recovery_from = 0;  // bits before this one do not count
     EventId recovery = kNoEvent;
     std::string name;
+
+    uint32_t rate() const { return fault_baud != 0 ? fault_baud : baud; }
   };
   static constexpr uint32_t kSuspendBits = 8;     // pause of an error-passive sender after a transmission
   static constexpr uint32_t kRecessiveTail = 11;  // every transfer ends with delimiter bits and intermission
@@ -158,12 +162,16 @@ class CanLine final : private EventTarget {
   static bool is_active(const Node& node) {
     return node.wired && node.counters.state() != ErrorState::BusOff;
   }
+  // On the wires, but not as one of the line.
+  static bool is_stranger(const Node& node) { return node.connected && !node.wired; }
+  static bool takes_bus(const Node& node) { return node.connected && node.counters.state() != ErrorState::BusOff; }
   NodeId plain_sender(uint64_t bit);
   bool pass_plain(uint64_t bit);
   void begin_plain(NodeId id, uint64_t bit);
   void note_plain(NodeId id, const Frame& frame, uint64_t tag, uint64_t bit, uint32_t bits);
   void end_plain(const FrameRecord& record, uint64_t begin, uint64_t tag);
   bool begin_transfer(uint32_t segment, uint64_t bit);
+  Listeners listeners_of(uint32_t segment) const;
   bool find_sound();
   void release(Segment& segment, uint64_t begin, uint32_t bits);
   void report_frame(const FrameRecord& record);
@@ -193,12 +201,19 @@ class CanLine final : private EventTarget {
     if (repeats_.any()) catch_up();
   }
   void catch_up();
+  // line_strangers.cpp: who is on the wires and does not belong there
+  void find_strangers();
+  uint64_t next_stranger(uint32_t segment) const;
+  bool stranger_sends(uint32_t segment, uint64_t bit) const;
+  void meet_strangers(uint32_t segment, uint64_t bit, const Listeners& listeners);
+  void settle_strangers(Time now, uint32_t segment);
 
   // line_wiring.cpp: who takes part
   void wire(Node& node) {
-    node.wired = node.connected && !node.swapped && node.baud == baud_;
+    node.wired = node.connected && !node.swapped && node.rate() == baud_;
     sound_ = false;
   }
+  void rewire(NodeId node);
   void switch_fault(Time now, size_t fault, bool on);
   void rebuild_segments();
   void deliver_late(Time now, size_t number);
@@ -209,6 +224,7 @@ class CanLine final : private EventTarget {
   // line_report.cpp: what observers and users hear
   void report(const LineEvent& event);
   void report_absence(NodeId node, LineObserver* only);
+  void report_error(const FrameRecord& frame, bool unacknowledged);
 
   EventQueue& queue_;
   uint32_t source_;
@@ -218,10 +234,11 @@ class CanLine final : private EventTarget {
   std::vector<Node> nodes_;
   Contenders contenders_;        // queue_changed() keeps them up to date; all of them are active
   std::vector<NodeId> winners_;  // of an arbitration
+  std::vector<NodeId> strangers_;  // in order of attachment; their frames are no contenders
   AcceptanceFilter filter_;
   NodeSet erring_;           // receive counter not 0
   bool recovering_ = false;  // some node may be
-  // No fault is planted, no node recovers, and every sender is acknowledged. False: not known yet.
+  // No fault is planted, no node recovers, none is a stranger, and every sender is acknowledged. False: not known yet.
   bool sound_ = false;
   std::vector<LineObserver*> observers_;
   std::vector<CanObserver*> frame_observers_;  // those of them who look at frames

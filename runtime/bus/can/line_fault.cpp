@@ -33,7 +33,7 @@ FrameFault LineFaults::strike(Time now, uint32_t id) {
     ++planted.seen;
     const bool hit =
         fault.frame != 0 ? planted.seen == fault.frame : planted.random.below(1000) < fault.per_mille;
-    if (hit && !struck.kind) struck = {fault.kind, fault.node, planted.random.next(), fault.lag};
+    if (hit && !struck.kind) struck = {fault.kind, fault.node, planted.random.next(), fault.lag, fault.of_line};
   }
   return struck;
 }

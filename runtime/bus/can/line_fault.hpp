@@ -49,6 +49,9 @@ struct LineFault {
   uint32_t per_mille = 1000;
   uint64_t seed = 1;
   Time lag = 0;  // of Delay
+
+  uint32_t baud = 0;     // of Baud: what the station is set to
+  bool of_line = false;  // nobody has planted it: the data of the line say it
 };
 
 // What strikes one transfer.
@@ -57,8 +60,10 @@ struct FrameFault {
   NodeId node = kNoNode;
   uint64_t chance = 0;  // chooses the bit
   Time lag = 0;
+  bool of_line = false;
 
   bool is(FaultKind wanted) const { return kind == wanted; }
+  bool disturbs_a_bit() const { return is(FaultKind::Corrupt) || is(FaultKind::Terminator) || is(FaultKind::Length); }
 };
 
 class LineFaults {

@@ -21,9 +21,11 @@ std::string describe_fault(const CanLine& line, const LineEvent& event) {
   const FaultType& type = kFaultTypes[event.fault];
   const bool over = event.kind == LineEventKind::FaultEnds;
   std::string text =
-      fmt::format("{}: planted fault '{}'{}: {} {}", line.name(), type.word, over ? " is over" : "",
+      fmt::format("{}: {}fault '{}'{}: {} {}", line.name(), event.of_line ? "" : "planted ", type.word, over ? " is over" : "",
                   event.node == kNoNode ? "the line" : line.node_name(event.node), type.text);
   if (event.other != kNoNode) text += " behind " + line.node_name(event.other);
+  if (event.kind == LineEventKind::FaultStrikes && static_cast<FaultKind>(event.fault) == FaultKind::Baud)
+    text += fmt::format(" ({} kbaud, line {} kbaud)", event.id / 1000, line.baud() / 1000);
   if (type.scope == FaultScope::Frame) text += fmt::format(", identifier {}", id_words(event.id));
   return text;
 }
@@ -44,9 +46,14 @@ void CanLine::report(const LineEvent& event) {
   for (LineObserver* observer : observers_) observer->on_line_event(*this, event);
 }
 
+void CanLine::report_error(const FrameRecord& frame, bool unacknowledged) {
+  const ErrorRecord error{frame.start, frame.end, frame.bits, unacknowledged};
+  for (CanObserver* observer : frame_observers_) observer->on_error_frame(*this, error);
+}
+
 void CanLine::report_absence(NodeId node, LineObserver* only) {
   const Node& n = nodes_[node];
-  if (n.connected && n.baud == baud_) return;
+  if (n.connected && n.rate() == baud_) return;
   const LineEvent event{n.connected ? LineEventKind::WrongBaudRate : LineEventKind::NotConnected,
                         queue_.now(), node};
   if (only != nullptr)

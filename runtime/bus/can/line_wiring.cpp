@@ -13,10 +13,19 @@ constexpr uint32_t kRecoveryBits = 11;
 
 }  // namespace
 
+void CanLine::rewire(NodeId id) {
+  Node& node = nodes_[id];
+  wire(node);
+  if (!is_stranger(node)) node.told_stranger = false;
+  find_strangers();
+  queue_changed(id);
+  schedule_start(node.segment);
+}
+
 void CanLine::set_baud(NodeId node, uint32_t baud) {
   wake();
   nodes_[node].baud = baud;
-  wire(nodes_[node]);
+  rewire(node);
   if (!is_active(node)) drop_queue(node);
   report_absence(node, nullptr);
 }
@@ -24,7 +33,7 @@ void CanLine::set_baud(NodeId node, uint32_t baud) {
 void CanLine::set_connected(NodeId node, bool connected) {
   wake();
   nodes_[node].connected = connected;
-  wire(nodes_[node]);
+  rewire(node);
   if (!connected) drop_queue(node);
   report_absence(node, nullptr);
 }
@@ -38,6 +47,7 @@ bool CanLine::set_line_baud(uint32_t baud) {
   bit_time_ = (kSecond + baud / 2) / baud;
   meter_ = LoadMeter(baud);
   for (Node& node : nodes_) wire(node);
+  find_strangers();
   return true;
 }
 
@@ -73,7 +83,7 @@ void CanLine::switch_fault(Time now, size_t number, bool on) {
   wake();
   const LineFault fault = faults_[number];
   report({on ? LineEventKind::FaultStrikes : LineEventKind::FaultEnds, now,
-          fault.behind ? kNoNode : fault.node, fault.behind ? fault.node : kNoNode, 0,
+          fault.behind ? kNoNode : fault.node, fault.behind ? fault.node : kNoNode, fault.kind == FaultKind::Baud ? fault.baud : 0,
           static_cast<uint8_t>(fault.kind)});
   switch (fault.kind) {
     case FaultKind::Cut:
@@ -87,8 +97,11 @@ void CanLine::switch_fault(Time now, size_t number, bool on) {
       break;
     case FaultKind::Swap:
       nodes_[fault.node].swapped = on;
-      wire(nodes_[fault.node]);
-      if (on) drop_queue(fault.node);
+      rewire(fault.node);
+      break;
+    case FaultKind::Baud:
+      nodes_[fault.node].fault_baud = on ? fault.baud : 0;
+      rewire(fault.node);
       break;
     case FaultKind::Short: shorts_ += on ? 1 : ~0U; break;
     case FaultKind::Stuck:

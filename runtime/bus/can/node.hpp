@@ -64,6 +64,14 @@ struct FrameRecord {
   uint32_t bits;  // on the wire, with intermission
 };
 
+// An error frame that all who listen have seen: an active error flag, on its end the delimiter.
+struct ErrorRecord {
+  Time start;  // of the frame that it destroyed
+  Time end;
+  uint32_t bits;        // both together, with intermission
+  bool unacknowledged;  // nobody had acknowledged the frame
+};
+
 enum class LineEventKind : uint8_t {
 #define LINE_EVENT(name, text) name,
 #include "runtime/bus/can/line_events.def"
@@ -77,6 +85,7 @@ struct LineEvent {
   uint32_t id = 0;         // identifier of the frame, where there is one
   uint8_t fault = 0;       // FaultKind of the events about planted faults
   size_t senders = 1;      // how many stations send the frame
+  bool of_line = false;    // the fault was not planted: the data of the line say it
 };
 
 // Looks at what happens to a line, but not at its frames.
@@ -91,6 +100,7 @@ class LineObserver {
 class CanObserver : public LineObserver {
  public:
   virtual void on_frame(const CanLine& line, const FrameRecord& record) = 0;
+  virtual void on_error_frame(const CanLine& /*line*/, const ErrorRecord& /*record*/) {}
 
  protected:
   ~CanObserver() = default;

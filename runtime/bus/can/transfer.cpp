@@ -102,9 +102,7 @@ void repeat(Transfer& transfer, const WireBits& bits) {
   transfer.bits = bits.count + 1 + kErrorFlagBits + kErrorDelimiterBits + kIntermissionBits;
 }
 
-}  // namespace
-
-void resolve(Transfer& transfer, Listeners listeners, KnownFrames& known, bool short_circuit) {
+void settle_outcome(Transfer& transfer, const Listeners& listeners, KnownFrames& known, bool short_circuit) {
   assert(!transfer.senders.empty());
   if (short_circuit)  // the start of frame already fails, and the flag is not seen
     return end_with_error(transfer, Transfer::Outcome::NoLevel, 1 + kErrorFlagBits);
@@ -144,9 +142,26 @@ void resolve(Transfer& transfer, Listeners listeners, KnownFrames& known, bool s
     transfer.end = bits.count;
     transfer.bits = bits.count + kIntermissionBits;
     const FrameFault& fault = transfer.fault;
-    if (fault.is(FaultKind::Corrupt) || fault.is(FaultKind::Terminator)) disturb(transfer, listeners, bits);
+    if (fault.disturbs_a_bit()) disturb(transfer, listeners, bits);
     if (fault.is(FaultKind::Duplicate)) repeat(transfer, bits);
   }
+}
+
+// Whose flag there is: of a sender, or of a listener who has seen the frame destroyed.
+bool is_flagged(const Transfer& transfer, const Listeners& listeners) {
+  using Outcome = Transfer::Outcome;
+  if (transfer.outcome == Outcome::Delivered || transfer.outcome == Outcome::NoLevel) return false;
+  const bool sender = std::any_of(transfer.senders.begin(), transfer.senders.end(),
+                                  [](const auto& s) { return s.error_active && !s.lost; });
+  const bool destroyed = transfer.outcome == Outcome::Corrupted || transfer.outcome == Outcome::Collision;
+  return sender || (destroyed && listeners.error_active);
+}
+
+}  // namespace
+
+void resolve(Transfer& transfer, Listeners listeners, KnownFrames& known, bool short_circuit) {
+  settle_outcome(transfer, listeners, known, short_circuit);
+  transfer.flagged = is_flagged(transfer, listeners);
 }
 
 }  // namespace ipos::runtime

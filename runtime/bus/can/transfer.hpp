@@ -35,6 +35,11 @@ struct Transfer {
   uint32_t bits = 0;            // bits from start_bit to the end of intermission
   std::vector<Sender> senders;  // all with the winning arbitration field
   FrameFault fault;
+  bool flagged = false;       // an error-active station sends its flag: all who listen see an error frame
+  // A station at another rate, or one with interchanged wires that sends, has destroyed it (clash.hpp).
+  NodeId stranger = kNoNode;
+  bool stranger_waits = false, others_wait = false;
+  bool mute = false;  // nobody but its sender hears anything
   bool plain = false;  // one sender, somebody acknowledges, nothing is disturbed: delivered
 
   bool sent_by(NodeId node) const {

@@ -145,18 +145,31 @@ class LineReader {
   std::string message_;
 };
 
+std::string line_head(Time time, std::string_view bus) {
+  const Time stamp = time + kCandumpEpoch;
+  return fmt::format("({:010d}.{:06d}) {} ", stamp / kSecond, stamp % kSecond / kMicrosecond, bus);
+}
+
 }  // namespace
 
 std::string candump_line(Time time, std::string_view bus, const Frame& frame) {
-  const Time stamp = time + kCandumpEpoch;
-  std::string line =
-      fmt::format("({:010d}.{:06d}) {} ", stamp / kSecond, stamp % kSecond / kMicrosecond, bus);
+  std::string line = line_head(time, bus);
   line += id_text(frame.id, frame.extended) + '#';
   if (frame.remote)
     line += frame.length == 0 ? std::string("R") : fmt::format("R{}", frame.length);
   else
     for (size_t i = 0; i < frame.length; ++i) line += fmt::format("{:02X}", frame.data[i]);
   return line;
+}
+
+std::string candump_line(const CanLine& line, const ErrorRecord& error) {
+  constexpr uint32_t kErrorFlag = 0x2000'0000, kAcknowledge = 0x20, kProtocol = 0x08, kBusError = 0x80;
+  return fmt::format("{}{:08X}#{:016X}", line_head(error.end, line.name()),
+                     kErrorFlag | (error.unacknowledged ? kAcknowledge : kProtocol | kBusError), 0);
+}
+
+void CandumpLog::on_error_frame(const CanLine& line, const ErrorRecord& record) {
+  out_ << candump_line(line, record) << '\n';
 }
 
 void CandumpLog::on_frame(const CanLine& line, const FrameRecord& record) {

@@ -19,12 +19,16 @@ inline constexpr Time kCandumpEpoch = 946'684'800 * kSecond;
 
 // One line without line end.
 std::string candump_line(Time time, std::string_view bus, const Frame& frame);
+// An error frame, as `candump -e` logs it: CAN_ERR_ACK, or CAN_ERR_PROT and CAN_ERR_BUSERROR without a detail
+// (linux/can/error.h).
+std::string candump_line(const CanLine& line, const ErrorRecord& error);
 
-// Writes each frame of the lines it observes at its moment of delivery.
+// Writes each frame of the lines it observes at its moment of delivery, and each error frame at its end.
 class CandumpLog final : public CanObserver {
  public:
   explicit CandumpLog(std::ostream& out) : out_(out) {}
   void on_frame(const CanLine& line, const FrameRecord& record) override;
+  void on_error_frame(const CanLine& line, const ErrorRecord& record) override;
   void on_line_event(const CanLine&, const LineEvent&) override {}
 
  private:

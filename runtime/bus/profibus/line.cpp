@@ -42,6 +42,7 @@ void Line::switch_fault(Time now, const LineFault& fault, bool on) {
   if (on) report({LineEventKind::Fault, now, fault.sender, fault.kind});
   Station& station = nodes_[fault.sender];
   if (fault.kind == LineFaultKind::Swap) station.swapped = on;
+  if (fault.kind == LineFaultKind::Baud) station.wrong_rate = on;
   station.node->on_fault(now, fault.kind, on);
 }
 
@@ -86,7 +87,7 @@ Reception Line::reception_of(const Transmission& transmission) const {
   Reception reception{tl::unexpected(FrameError::Parity), frame.octets, at(transmission.begin),
                       at(transmission.end)};
   if (transmission.collided) return reception;
-  if (nodes_[transmission.sender].swapped) {
+  if (nodes_[transmission.sender].garbles()) {
     reception.frame = tl::unexpected(FrameError::Framing);
     return reception;
   }
@@ -145,7 +146,7 @@ void Line::end_transmission(Time now, NodeId who) {
   for (NodeId node = 0; node < nodes_.size(); ++node) {
     const Station& station = nodes_[node];
     if (node == transmission.sender || !station.connected || talks_over(node, transmission)) continue;
-    if (station.baud == baud_ && !station.swapped) {
+    if (station.baud == baud_ && !station.garbles()) {
       station.node->on_reception(now, reception);
     } else {
       Reception garbage = reception;

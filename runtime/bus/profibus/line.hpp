@@ -98,7 +98,10 @@ class Line final : private runtime::EventTarget {
     uint32_t baud;  // at which it listens
     bool connected = true;
     bool sending = false;
-    bool swapped = false;  // A and B
+    bool swapped = false;     // A and B
+    bool wrong_rate = false;  // by a planted fault
+
+    bool garbles() const { return swapped || wrong_rate; }
   };
   struct Transmission {
     NodeId sender;

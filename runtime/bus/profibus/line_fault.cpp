@@ -47,7 +47,9 @@ void damage(LineFaultKind kind, WireFrame& frame, runtime::Random& random) {
       return frame.octets.resize(random.below(static_cast<uint32_t>(frame.octets.size())));
     case LineFaultKind::Parity:
     case LineFaultKind::Collision: frame.damage = FrameError::Parity; return;
-    case LineFaultKind::Noise: break;
+    case LineFaultKind::Noise:
+    case LineFaultKind::Terminator:
+    case LineFaultKind::Length: break;
     default: return;  // of stations
   }
   disturb(frame, random);

@@ -124,6 +124,12 @@ std::vector<std::string> check_line(const LinePlan& plan) {
   return found;
 }
 
+size_t wrong_terminators(const LinePlan& plan) {
+  std::vector<std::string> found;
+  check_terminators(plan, found);
+  return found.size();
+}
+
 std::vector<std::string> check_plan(const LinePlan& plan) {
   std::vector<std::string> found = check_line(plan);
   for (const PlannedStation& station : plan.stations) {

@@ -61,4 +61,7 @@ std::vector<std::string> check_plan(const LinePlan& plan);
 // Of these those of cable, terminators, number of stations and addresses: what a master does not find out by itself.
 std::vector<std::string> check_line(const LinePlan& plan);
 
+// Terminators that are not where they must be, and missing ones.
+size_t wrong_terminators(const LinePlan& plan);
+
 }  // namespace ipos::profibus

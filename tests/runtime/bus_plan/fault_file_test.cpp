@@ -35,7 +35,7 @@ TEST(FaultFile, EveryKindIsRead) {
 TEST(FaultFile, MistakesAreLocated) {
   EXPECT_EQ(refused("explode", ""),
             "18: 'explode' is no fault; known are drop, corrupt, delay, duplicate, terminator, cut, swap, "
-            "short, stuck");
+            "short, stuck, length, baud");
   EXPECT_EQ(refused("drop", "frame = 0\n"), "19: frames are counted from 1");
   EXPECT_EQ(refused("drop", "frame = 1\nrate = 5\n"),
             "20: a fault strikes the n-th frame, or a rate of them: not both");
@@ -43,6 +43,10 @@ TEST(FaultFile, MistakesAreLocated) {
   EXPECT_EQ(refused("delay", ""), "16: delay = ... belongs to kind = \"delay\", and there it must be");
   EXPECT_EQ(refused("drop", "delay = \"1ms\"\n"),
             "16: delay = ... belongs to kind = \"delay\", and there it must be");
+  EXPECT_EQ(refused("baud", "station = \"a\"\n"), "16: baud = ... belongs to kind = \"baud\", and there it must be");
+  EXPECT_EQ(refused("drop", "baud = 250000\n"), "16: baud = ... belongs to kind = \"baud\", and there it must be");
+  EXPECT_EQ(refused("baud", "station = \"a\"\nbaud = 9600\n"),
+            "20: a CAN station has 125000, 250000, 500000, 1000000 baud, not 9600");
   EXPECT_EQ(refused("cut", ""), "16: a fault 'cut' needs station = \"...\" or behind = \"...\"");
   EXPECT_EQ(refused("swap", ""), "16: a fault 'swap' needs station = \"...\"");
   EXPECT_EQ(refused("swap", "behind = \"a\"\n"), "19: behind belongs to kind = \"cut\"");

@@ -136,6 +136,71 @@ TEST(Silence, SwappedWires) {
   EXPECT_TRUE(rig.with(20).empty());
 }
 
+// The symptoms of 1053 1610 p. 64 and MOVITRAC 07 chapter 7.1 in a run. What disturbs a line, on one that works without it:
+// a control with ten telegrams in 100 ms.
+struct Disturbed {
+  size_t answers;
+  size_t told;  // of the disturbance
+};
+Disturbed disturbed(const std::string& bus, const std::string& first, const std::string& last, const std::string& cause) {
+  PlantRig rig(bus_text(500'000, bus) +
+               "[[control]]\nname = \"plc\"\nsbus = \"sbus\"\n" + first +
+               "[[control.target]]\naddress = 1\npo = [6, 5000, 0]\nevery = \"10ms\"\n" +
+               station_text("unit1", kFollows, "md60a", "", last));
+  rig.run_until(100 * kMillisecond);
+  return {rig.with(12).size(), rig.says("sbus: " + cause)};
+}
+
+TEST(Silence, ALineThatIsTooLong) {
+  PROVES("DIAG-05", "M07-SBUS-24");
+  const auto of = [](const std::string& metres, uint32_t share) {
+    return disturbed("length = " + metres + "\n", "", "",
+                     share == 0 ? "the line is longer"
+                                : "the line is longer than 80 m: " + std::to_string(share) + " of 1000 frames are disturbed");
+  };
+  EXPECT_EQ(of("80", 0).answers, 10U);
+  EXPECT_EQ(of("80", 0).told, 0U);
+  // (length - 80) / 80, rounded down: between good and dead a choice of ours.
+  EXPECT_EQ(of("81", 12).told, 1U);
+  EXPECT_EQ(of("100", 250).told, 1U);
+  for (const char* dead : {"160", "300"}) {
+    EXPECT_EQ(of(dead, 1000).told, 1U) << dead;
+    EXPECT_EQ(of(dead, 1000).answers, 0U) << dead;
+  }
+}
+
+TEST(Silence, TerminatingResistorsThatAreMissing) {
+  PROVES("DIAG-05", "M07-SBUS-24");
+  const std::string on = "terminator = true\n", off = "terminator = false\n";
+  EXPECT_EQ(disturbed("", on, on, "").answers, 10U);
+  EXPECT_EQ(disturbed("", on, on, "a terminating resistor").told, 0U);
+  EXPECT_EQ(disturbed("", on, off, "a terminating resistor is not where it must be: 500 of 1000").told, 1U);
+  const Disturbed none = disturbed("", off, off, "2 terminating resistors are not where they must be: 1000 of 1000");
+  EXPECT_EQ(none.told, 1U);
+  EXPECT_EQ(none.answers, 0U);
+}
+
+// The unit at another rate destroys what the control sends to the other one until it is error passive, and the journal says
+// why. How many frames that takes is in strangers_test.cpp.
+TEST(Silence, AnotherRateDisturbsTheOthers) {
+  PROVES("DIAG-03", "M07-SBUS-09", "M07-SBUS-24");
+  PlantRig rig(controlled(kFollows, station_text("unit2", "P813 = 2\nP816 = 1\n")));
+  rig.run_until(200 * kMillisecond);
+  EXPECT_EQ(rig.says("sbus: unit2 destroys the frames of all with its error flags: it hears them at another rate"), 1U);
+  EXPECT_EQ(rig.says("sbus: unit2 is error passive"), 1U);
+  EXPECT_FALSE(rig.with(12).empty()) << "an error-passive station disturbs nobody by hearing (ISO 11898-1)";
+}
+
+// A moment: the rate is another one for a while.
+TEST(Silence, AnotherRateForAWhile) {
+  PlantRig rig(controlled(kFollows, fault_text("baud", "station = \"unit1\"\nbaud = 250000\nfrom = \"50ms\"\nuntil = \"100ms\"\n")));
+  rig.run_until(300 * kMillisecond);
+  EXPECT_EQ(rig.says("sbus: planted fault 'baud': unit1 has another baud rate (250 kbaud, line 500 kbaud)"), 1U);
+  for (const FrameRecord& answer : rig.with(12))
+    EXPECT_TRUE(answer.end < 50 * kMillisecond || answer.start > 100 * kMillisecond);
+  EXPECT_GT(rig.with(12).back().end, 280 * kMillisecond);
+}
+
 TEST(Silence, WrongAddress) {
   PROVES("DIAG-06");
   const std::string call =

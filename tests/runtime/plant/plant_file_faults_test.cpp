@@ -52,9 +52,10 @@ TEST(PlantFileFaults, KeysOfEachKind) {
   } rows[] = {
       {"corrupt", true, false, true}, {"terminator", false, false, true}, {"duplicate", false, false, true},
       {"drop", true, false, true},    {"delay", true, false, true},       {"cut", true, true, false},
-      {"swap", true, true, false},    {"short", false, false, false},     {"stuck", false, false, false}};
+      {"swap", true, true, false},    {"short", false, false, false},     {"stuck", false, false, false},
+      {"length", false, false, true}, {"baud", true, true, false}};
   for (const auto& row : rows) {
-    const std::string rest = row.word == "delay" ? "delay = '1ms'\n" : "";
+    const std::string rest = row.word == "delay" ? "delay = '1ms'\n" : row.word == "baud" ? "baud = 250000\n" : "";
     const std::string begin = "[[fault]]\nbus = 'b'\nkind = '" + row.word + "'\n" + rest;
     const std::string station = row.needs_station ? "station = 'u'\n" : "";
     if (row.may_have_station)
@@ -88,7 +89,7 @@ TEST(PlantFileFaults, MistakesOfAnSbus) {
       {
           {kFaultOf + "^'lost'\n",
            "'lost' is no fault; known are drop, corrupt, delay, duplicate, terminator, cut, swap, short, "
-           "stuck"},
+           "stuck, length, baud"},
           {"^[[fault]]\nbus = 'b'\n", "a [[fault]] needs kind"},
           {"^[[fault]]\nkind = 'drop'\n", "a [[fault]] needs bus"},
           {"[[fault]]\nbus = ^'x'\nkind = 'drop'\n", "there is no bus 'x'"},
@@ -127,7 +128,7 @@ TEST(PlantFileFaults, OfAProfibusLine) {
                        full.profibus->from, full.profibus->until),
             std::tuple(profibus::LineFaultKind::Noise, 5U, 7U, kMillisecond, 2 * kMillisecond));
   EXPECT_EQ(first_fault(kFaultOfProfibus + "'cut'\nframe = 3\n").profibus->frame, 3U);
-  for (const std::string word : {"lost", "cut", "parity", "noise", "collision"})
+  for (const std::string word : {"lost", "cut", "parity", "noise", "collision", "terminator", "length"})
     EXPECT_EQ(
         profibus::line_fault_type(first_fault(kFaultOfProfibus + "'" + word + "'\n").profibus->kind).word,
         word);

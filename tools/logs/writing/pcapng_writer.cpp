@@ -53,6 +53,16 @@ void PcapngWriter::can(runtime::Time time, const std::string& bus, const runtime
   packet(time, bus, LinkType::SocketCan, std::span(bytes).first(8 + length));
 }
 
+// Eight bytes without a detail (linux/can/error.h).
+void PcapngWriter::can_error(const runtime::CanLine& line, const runtime::ErrorRecord& error) {
+  constexpr uint32_t kAcknowledge = 0x20, kProtocol = 0x08, kBusError = 0x80;
+  const uint32_t word = pcapng::kError | (error.unacknowledged ? kAcknowledge : kProtocol | kBusError);
+  std::array<uint8_t, 16> bytes{};
+  for (unsigned n = 0; n < 4; ++n) bytes[n] = static_cast<uint8_t>(word >> (24 - 8 * n));
+  bytes[4] = 8;
+  packet(error.end, line.name(), LinkType::SocketCan, bytes);
+}
+
 void PcapngWriter::serial(const std::string& line, const runtime::Reception& reception) {
   packet(
       reception.start, line, LinkType::User0Serial, reception.bytes.span(),

@@ -14,6 +14,7 @@ class PcapngWriter final : public LogWriter {
   // Lines that are known stand at the head; others are added when they are first heard.
   explicit PcapngWriter(std::ostream& out, const LogPart& part = {});
   void can(runtime::Time time, const std::string& bus, const runtime::Frame& frame) override;
+  void can_error(const runtime::CanLine& line, const runtime::ErrorRecord& error) override;
   void serial(const std::string& line, const runtime::Reception& reception) override;
   void dp(const std::string& line, const profibus::Reception& reception) override;
   bool has_serial() const override { return true; }

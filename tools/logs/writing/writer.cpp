@@ -20,6 +20,9 @@ class Candump final : public LogWriter {
   void can(Time time, const std::string& bus, const Frame& frame) override {
     out_ << runtime::candump_line(time, bus, frame) << '\n';
   }
+  void can_error(const runtime::CanLine& line, const runtime::ErrorRecord& error) override {
+    out_ << runtime::candump_line(line, error) << '\n';
+  }
 
  private:
   std::ostream& out_;
@@ -65,15 +68,23 @@ class Asc final : public LogWriter {
 
   void can(Time time, const std::string& bus, const Frame& frame) override {
     const std::string id = fmt::format("{:X}{}", frame.id, frame.extended ? "x" : "");
-    out_ << fmt::format("{:>4}.{:06} {}  {:<15} Rx   ", time / runtime::kSecond,
-                        time % runtime::kSecond / runtime::kMicrosecond, channels_.of(bus), id);
+    out_ << head(time, bus) << fmt::format("{:<15} Rx   ", id);
     if (frame.remote)
       out_ << fmt::format("r {:x}\n", frame.length);
     else
       out_ << fmt::format("d {:x}{}\n", frame.length, bytes_text(frame));
   }
 
+  void can_error(const runtime::CanLine& line, const runtime::ErrorRecord& error) override {
+    out_ << head(error.end, line.name()) << "ErrorFrame\n";
+  }
+
  private:
+  std::string head(Time time, const std::string& bus) {
+    return fmt::format("{:>4}.{:06} {}  ", time / runtime::kSecond, time % runtime::kSecond / runtime::kMicrosecond,
+                       channels_.of(bus));
+  }
+
   std::ostream& out_;
   bool ends_;
   Channels channels_;

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "runtime/bus/can/frame.hpp"
+#include "runtime/bus/can/line.hpp"
 #include "runtime/bus/movilink/serial_receiver.hpp"
 #include "runtime/bus/profibus/fdl_receiver.hpp"
 
@@ -19,6 +19,8 @@ class LogWriter {
   virtual ~LogWriter() = default;
 
   virtual void can(runtime::Time time, const std::string& bus, const runtime::Frame& frame) = 0;
+  // Forms without a row for error frames leave them out.
+  virtual void can_error(const runtime::CanLine& /*line*/, const runtime::ErrorRecord& /*error*/) {}
   // Forms of CAN alone leave these out.
   virtual void serial(const std::string& /*line*/, const runtime::Reception& /*reception*/) {}
   virtual void dp(const std::string& /*line*/, const profibus::Reception& /*reception*/) {}

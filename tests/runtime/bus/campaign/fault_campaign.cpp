@@ -113,11 +113,12 @@ std::vector<FaultConfig> random_faults(uint64_t seed) {
                       : fault.from + between(random, kMillisecond, 50 * kMillisecond);
     const std::string station = fmt::format("unit{}", random.below(4));
     const bool alone =
-        type.kind == FaultKind::Swap || type.kind == FaultKind::Cut ||
+        type.kind == FaultKind::Swap || type.kind == FaultKind::Cut || type.kind == FaultKind::Baud ||
         ((type.kind == FaultKind::Corrupt || type.kind == FaultKind::Drop || type.kind == FaultKind::Delay) &&
          random.below(2) == 0);
     if (alone) config.station = station;
     fault.behind = type.kind == FaultKind::Cut && random.below(2) == 0;
+    if (type.kind == FaultKind::Baud) fault.baud = kBaudRates[random.below(2) == 0 ? 1 : 3];
     if (type.scope == FaultScope::Frame) {
       fault.seed = random.next();
       if (random.below(4) == 0)

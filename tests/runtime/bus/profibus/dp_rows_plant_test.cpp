@@ -123,6 +123,48 @@ TEST(DpRows, CableOfTypeA) {
   }
 }
 
+// A line that is too long, or without its resistors, loses frames: the master repeats, or finds nobody (2.5; the limits of
+// EN 50170). The share between good and dead is ours.
+TEST(DpRows, ALineThatDisturbs) {
+  const auto on = [](const std::string& keys, bool terminated) {
+    std::string line = kLine;
+    auto bench = std::make_unique<DpPlant>(
+        line + keys + station("", "profibus_terminator = " + std::string(terminated ? "true" : "false") + "\n") + master(""));
+    bench->run(2 * kSecond);
+    return bench;
+  };
+  const auto told = [](const DpPlant& bench, const std::string& text) {
+    size_t count = 0;
+    for (const auto& entry : bench.plant->journal().entries()) count += entry.text.find(text) != std::string::npos;
+    return count;
+  };
+  const auto good = on("length = 400\n", true);
+  const uint64_t exchanges = good->master().slave(0).exchanges();
+  EXPECT_GT(exchanges, 100U);
+  EXPECT_EQ(good->master().repetitions(), 0U);
+  EXPECT_EQ(told(*good, "are disturbed"), 0U);
+  const auto dead = on("length = 800\n", true);
+  EXPECT_EQ(told(*dead, "dp: the line is longer than 400 m: 1000 of 1000 frames are disturbed"), 1U);
+  EXPECT_EQ(dead->master().slave(0).exchanges(), 0U);
+  EXPECT_TRUE(dead->master().slave(0).view().has(diag::kNonExistent));
+  const auto open = on("", false);
+  EXPECT_EQ(told(*open, "dp: a terminating resistor is not where it must be: 500 of 1000 frames are disturbed"), 1U);
+  EXPECT_GT(open->master().repetitions(), 100U);
+  EXPECT_LT(open->master().slave(0).exchanges(), exchanges / 2);
+}
+
+// A station that is set to another rate for a while: no communication with it, and it comes back.
+TEST(DpRows, AnotherRateForAWhile) {
+  DpPlant bench(kLine + station() + master("watchdog = \"200ms\"\n") +
+                "[[fault]]\nbus = \"dp\"\nkind = \"baud\"\nstation = \"inv\"\nfrom = \"1s\"\nuntil = \"2s\"\n");
+  bench.run(kSecond - kMillisecond);
+  EXPECT_FALSE(bench.master().slave(0).view().has(diag::kNonExistent));
+  bench.run(1900 * kMillisecond);
+  EXPECT_TRUE(bench.master().slave(0).view().has(diag::kNonExistent));
+  bench.run(4 * kSecond);
+  EXPECT_FALSE(bench.master().slave(0).view().has(diag::kNonExistent));
+}
+
 // --- octets of a foreign master of FMS, as a test sends them
 
 struct Heard final : runtime::BusObserver {
