@@ -20,7 +20,9 @@ class CanNodes::Node final : public runtime::CanNode {
     Time ready;  // takes part in arbitration from then on
   };
 
-  Node(CanNodes& all, std::string name) : all_(all), id_(all.line_.attach(std::move(name), all.line_.baud(), *this)) {}
+  Node(CanNodes& all, std::string name) : all_(all), id_(all.line_.attach(std::move(name), all.line_.baud(), *this)) {
+    all.line_.stand_outside(id_);
+  }
 
   NodeId id() const { return id_; }
   bool takes_part() const { return all_.line_.is_active(id_); }

@@ -55,6 +55,19 @@ TEST(PlantLog, AFrameHasTheTimeOfItsEnd) {
   EXPECT_LT(got.can[0].time, 10 * kMillisecond + 270'000);
 }
 
+// The first attempt is disturbed, the second one gets through: readers of error frames count one.
+TEST(PlantLog, AnErrorFrameIsInIt) {
+  const std::string fault = "[[fault]]\nbus = \"sbus\"\nkind = \"corrupt\"\nframe = 1\n";
+  for (const char* name : {"a.log", "a.asc", "a.pcapng"}) {
+    Logged run(kCan + (kStation + std::string("sbus = \"sbus\"\n")) + fault, name);
+    run.send("sbus", "4D3#3100207E00000000", 10 * kMillisecond);
+    const Taken got = run.taken_to(20 * kMillisecond);
+    EXPECT_TRUE(got.wrong.empty()) << name;
+    EXPECT_EQ(got.can.size(), 1U) << name;
+    EXPECT_EQ(got.left_out.of(LeftOut::ErrorFrame), 1U) << name;
+  }
+}
+
 // 1Dh would be an answer; this request to address 1 stops in the middle of its words: what has come is told as void.
 TEST(PlantLog, ATelegramThatDoesNotEndIsTold) {
   Logged run(std::string(kSerial) + kStation, "a.pcapng");

@@ -72,6 +72,8 @@ class CanLine final : private EventTarget {
 
   // A controller outside of the line tells its error state; what the line has counted of it is forgotten.
   void tell_error_state(NodeId node, ErrorState state);
+  // Its controller is outside and counts by itself: at another rate it takes no part, and disturbs nobody.
+  void stand_outside(NodeId node) { nodes_[node].outside = true; }
   // Another rate for all who have that of the line. False: frames have been sent already, or wait.
   bool set_line_baud(uint32_t baud);
 
@@ -124,6 +126,7 @@ class CanLine final : private EventTarget {
 
     bool connected = true;
     bool swapped = false;  // high and low interchanged
+    bool outside = false;  // stand_outside()
     bool told_stranger = false;
     uint32_t baud = 0;
     uint32_t fault_baud = 0;  // of a planted fault, in place of its own; 0: none
@@ -163,8 +166,10 @@ class CanLine final : private EventTarget {
     return node.wired && node.counters.state() != ErrorState::BusOff;
   }
   // On the wires, but not as one of the line.
-  static bool is_stranger(const Node& node) { return node.connected && !node.wired; }
-  static bool takes_bus(const Node& node) { return node.connected && node.counters.state() != ErrorState::BusOff; }
+  static bool is_stranger(const Node& node) { return node.connected && !node.wired && !node.outside; }
+  static bool takes_bus(const Node& node) {
+    return node.connected && (node.wired || !node.outside) && node.counters.state() != ErrorState::BusOff;
+  }
   NodeId plain_sender(uint64_t bit);
   bool pass_plain(uint64_t bit);
   void begin_plain(NodeId id, uint64_t bit);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "runtime/bus/can/line.hpp"
 #include "runtime/bus/log/candump.hpp"
 
 namespace ipos::tools {

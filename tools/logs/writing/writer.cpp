@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "runtime/bus/can/line.hpp"
 #include "runtime/bus/log/candump.hpp"
 #include "tools/logs/writing/pcapng_writer.hpp"
 

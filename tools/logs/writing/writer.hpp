@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "runtime/bus/can/line.hpp"
+#include "runtime/bus/can/node.hpp"
 #include "runtime/bus/movilink/serial_receiver.hpp"
 #include "runtime/bus/profibus/fdl_receiver.hpp"
 
