@@ -19,6 +19,7 @@ bool CanLine::begin_repeats(uint64_t bit) {
   if (node.counters.state() != ErrorState::Passive || !node.unacknowledged || node.node->minds_repeats()) return false;
   if (node.queue.empty() || node.queue.front().frame != last.senders.front().frame || !contenders_.all_ready(bit))
     return false;
+  if (last.flagged || !strangers_.empty()) return false;  // others hear it, or take part
   if (bit != segments_[0].free_bit + kSuspendBits || recovering_ || shorts_ != 0 || faults_.may_strike(queue_.now())) return false;
   const auto active = [](const Node& other) { return is_active(other); };
   if (!is_active(node) || std::count_if(nodes_.begin(), nodes_.end(), active) != 1) return false;
