@@ -13,7 +13,7 @@ namespace {
 using tools::kept_survivors;
 using tools::Survivor;
 
-const std::string kProgram = "#include \"h.h\"\nlong a, b;\nmain()\n{\n    a = LIMIT;\n    if (a == 1)\n        b = 6;\n}\n";
+const std::string kMutated = "#include \"h.h\"\nlong a, b;\nmain()\n{\n    a = LIMIT;\n    if (a == 1)\n        b = 6;\n}\n";
 const std::string kHeader = "#define LIMIT 5\n";
 
 class Survivors : public ::testing::Test {
@@ -35,7 +35,7 @@ class Survivors : public ::testing::Test {
 
 // Nobody looks at b, and its line is not reached; a is looked at, so that 5 in the header has no survivor.
 TEST_F(Survivors, AreKeptWithTheirPlaces) {
-  const std::string text = kProgram + "// expect a == 5\n// expect b == 0\n";
+  const std::string text = kMutated + "// expect a == 5\n// expect b == 0\n";
   mutate(text);
   const std::vector<Survivor> wanted{{6, 14, "1 became 0", true}, {7, 9, "removed: b = 6;", false}, {7, 13, "6 became 7", false}};
   EXPECT_EQ(kept("A.IPC", text), wanted);
@@ -46,13 +46,13 @@ TEST_F(Survivors, AreKeptWithTheirPlaces) {
 }
 
 TEST_F(Survivors, AHeaderHasItsOwn) {
-  const std::string text = kProgram + "// expect b == 0\n";
+  const std::string text = kMutated + "// expect b == 0\n";
   mutate(text);
   EXPECT_EQ(kept("h.h", kHeader), (std::vector<Survivor>{{1, 15, "LIMIT: 5 became 6", true}}));
 }
 
 TEST_F(Survivors, AreGoneWhenAllIsNoticed) {
-  const std::string text = kProgram + "// expect a == 5\n";
+  const std::string text = kMutated + "// expect a == 5\n";
   mutate(text);
   EXPECT_FALSE(kept("A.IPC", text).empty());
   const std::string better = "long a;\nmain()\n{\n    a = 5;\n}\n// expect a == 5\n";
@@ -63,7 +63,7 @@ TEST_F(Survivors, AreGoneWhenAllIsNoticed) {
 
 // Listing runs nothing, and tests that do not pass have nothing to say.
 TEST_F(Survivors, StayWhereNothingWasTried) {
-  const std::string text = kProgram + "// expect a == 5\n";
+  const std::string text = kMutated + "// expect a == 5\n";
   mutate(text);
   const std::vector<Survivor> before = kept("A.IPC", text);
   run_ipos({"test", "--mutate", "--list", "A.IPC"}, folder_.path());
@@ -73,7 +73,7 @@ TEST_F(Survivors, StayWhereNothingWasTried) {
 }
 
 TEST_F(Survivors, ACacheOfSomebodyElseIsNotRead) {
-  const std::string text = kProgram + "// expect a == 5\n";
+  const std::string text = kMutated + "// expect a == 5\n";
   mutate(text);
   for (const auto& file : std::filesystem::directory_iterator(folder_.path() / "cache" / "ipos"))
     folder_.write("cache/ipos/" + file.path().filename().string(), "{\"source\": 5, \"survivors\": 7}");

@@ -97,7 +97,7 @@ struct Plc {
     unit.run_on(5 * kMillisecond);
     written = written || (!before && unit.value("120") == 950);
     const Octets& inputs = unit.master().slave(0).inputs();
-    for (int n = 184; n < 194; ++n) program.areas["PI"][n] = inputs.at(static_cast<size_t>(n - 184));
+    for (int n = 184; n < 194; ++n) program.areas["PI"][n] = inputs[static_cast<size_t>(n - 184)];
     const std::string out = text_of(std::span(octets).first(8));
     if (sent.empty() || sent.back() != out) sent.push_back(out);
     answered = text_of(std::span(inputs).first(8));
