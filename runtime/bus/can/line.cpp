@@ -129,7 +129,7 @@ inline uint64_t CanLine::next_start(uint32_t number) const {
   if (stuck_ != 0 || rewire_ || (contenders_.empty() && strangers_.empty())) return kNoBit;
   const uint64_t free_bit = segments_[number].free_bit;
   if (segments_.size() == 1 && !contenders_.empty() && contenders_.all_ready(free_bit)) return free_bit;
-  uint64_t bit = strangers_.empty() ? kNoBit : next_stranger(number);
+  uint64_t bit = strangers_.empty() || shorts_ != 0 ? kNoBit : next_stranger(number);  // a short circuit is all they hear
   contenders_.each([&](NodeId id) {
     if (nodes_[id].segment == number) bit = std::min(bit, next_ready(nodes_[id]));
   });
@@ -369,7 +369,7 @@ bool CanLine::begin_transfer(uint32_t number, uint64_t bit) {
     winners_.clear();
   }
   const bool carried = !transfer.senders.empty();
-  if (!carried && (strangers_.empty() || !stranger_sends(number, bit))) return false;
+  if (!carried && (strangers_.empty() || shorts_ != 0 || !stranger_sends(number, bit))) return false;
   pause_recovery(number, bit);
   if (!faults_.empty() && carried) transfer.fault = faults_.strike(queue_.now(), transfer.senders.front().frame.id);
   const Listeners listeners = listeners_of(number);

@@ -178,7 +178,7 @@ TEST(TorqueLimit, BoundsTheActiveCurrent) {
   PROVES("DRV-09");
   MachineData machine = light_machine();
   machine.inertia = 400;
-  for (const int mode : {0, 5, 11, 13, 16, 18})
+  for (const int mode : {0, 5, 11, 16})
     for (const int limit : {0, 40'000, 100'000, 150'000}) {
       SCOPED_TRACE(mode);
       DriveRig rig("md60a", {}, machine);

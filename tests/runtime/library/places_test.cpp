@@ -42,7 +42,7 @@ TEST_F(LibraryPlaces, NamesOfEveryKind) {
   EXPECT_EQ(plant_.names(IPOS_PLANT_WORD), (Names{"PO1", "PO2", "PO3", "PI1", "PI2", "PI3"}));
   EXPECT_EQ(plant_.names(IPOS_PLANT_STATE),
             (Names{"fault", "status", "enabled", "ready", "speed", "setpoint", "position", "powered",
-                   "running", "program_fault", "program_fault_line"}));
+                   "running", "program_fault", "program_fault_line", "mains"}));
   EXPECT_EQ(plant_.names(IPOS_PLANT_SHAFT), (Names{"shaft_speed", "load_torque"}));
   // Each once, and every number and every index that the table has is reached.
   const stdlib::ParameterTable& table = stdlib::parameter_table(*stdlib::find_unit("mdxb"));
@@ -117,7 +117,7 @@ TEST_F(LibraryPlaces, WhatIsMissingIsToldWithWhatThereIs) {
   };
   const std::string kStates =
       "states fault, status, enabled, ready, speed, setpoint, position, powered, running, program_fault, "
-      "program_fault_line; terminals, words and parameters";
+      "program_fault_line, mains; terminals, words and parameters";
   EXPECT_EQ(
       told(IPOS_PLANT_VARIABLE, "x"),
       "station 'a' has no variable 'x'; it has n, T.a, T.b[0], T.b[1], H0..H1023 and the system variables");
