@@ -6,19 +6,17 @@
 
 #include <algorithm>
 #include <array>
-#include <bitset>
 
 #include "compiler/ast/walk.hpp"
 #include "compiler/sema/call_graph.hpp"
 #include "compiler/sema/fold.hpp"
+#include "compiler/sema/written.hpp"
 #include "stdlib/header_names.hpp"
 #include "stdlib/language_tables.hpp"
 #include "stdlib/system_variables.hpp"
 
 namespace ipos::compiler {
 namespace {
-
-using Numbers = std::bitset<kMaxNumbers>;
 
 // A declared variable or a part of it, as far as the text alone says.
 struct Part {

@@ -4,8 +4,8 @@
 #include <bitset>
 #include <vector>
 
-#include "compiler/sema/ranges.hpp"
 #include "compiler/sema/checked.hpp"
+#include "compiler/sema/ranges.hpp"
 
 namespace ipos::compiler {
 
