@@ -44,7 +44,7 @@ class ConstantFlow {
   void run(const Visit& visit);
 
   // For `visit`: values of a variable, empty when they are not known.
-  const std::vector<KnownValue>& values(uint32_t number) const { return sets_.values(at(number)); }
+  std::span<const KnownValue> values(uint32_t number) const { return sets_.values(at(number)); }
   const KnownValue* only(uint32_t number) const { return sets_.only(at(number)); }
   const std::vector<Defined>& defined() const { return state_.defined; }
 

@@ -2,9 +2,10 @@
 // analysis of constants (constant_flow.hpp) joins and compares.
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <map>
-#include <optional>
+#include <deque>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -26,22 +27,26 @@ class KnownValues {
   static constexpr Set kAny = 0;  // nothing is known
   static constexpr size_t kMost = 4;
 
-  KnownValues() : sets_(1) {}
+  KnownValues() : sets_(1), table_(1024, kAny) {}
 
-  Set of(KnownValue known) { return add({known}); }
+  Set of(KnownValue known) { return number_of({{known}, 1}); }
   Set join(Set a, Set b);
-  // In rising order of values and places; empty for kAny.
-  const std::vector<KnownValue>& values(Set set) const { return sets_[set]; }
+  // In rising order of values and places; empty for kAny. They stay where they are.
+  std::span<const KnownValue> values(Set set) const { return {sets_[set].known.data(), sets_[set].count}; }
   // The only value of a set.
   const KnownValue* only(Set set) const;
 
  private:
-  using Key = std::vector<std::pair<int32_t, uint32_t>>;
+  struct Members {
+    std::array<KnownValue, kMost> known;
+    size_t count = 0;
+  };
 
-  Set add(std::vector<KnownValue> values);
+  Set number_of(const Members& members);
+  size_t place_of(const Members& members) const;
 
-  std::vector<std::vector<KnownValue>> sets_;
-  std::map<Key, Set> numbers_;
+  std::deque<Members> sets_;
+  std::vector<Set> table_;  // by hash, each in the first free place behind its own; kAny: free. At least half of it is
   std::unordered_map<uint64_t, Set> joined_;
 };
 

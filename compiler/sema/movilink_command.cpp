@@ -87,7 +87,7 @@ void CommandCheck::check_bus(const Point& point, uint32_t first) {
     if (row.exchanges && (row.every || context_.unit.has(row.trait))) codes.push_back(row.code);
   std::sort(codes.begin(), codes.end());
   const auto has = [&](int32_t code) { return std::find(codes.begin(), codes.end(), code) != codes.end(); };
-  const auto& addresses = flow_.values(first + MovlnkMember::Address);
+  const std::span<const KnownValue> addresses = flow_.values(first + MovlnkMember::Address);
   const bool own = std::any_of(addresses.begin(), addresses.end(), [](const KnownValue& one) { return one.value == kOwnUnitAddress; });
   if (!own)
     refuse(Diag::MovilinkValue, first + MovlnkMember::BusType, [&](int32_t value) {

@@ -67,7 +67,7 @@ void CommandCheck::check_waiting(const Point& point) {
   const Opcode opcode = point.call.opcode;
   const int32_t ms = opcode == Opcode::WaitK ? word(point, 0) : 0;
   if (ms > 0) {
-    const auto& watchdog = flow_.values(ConstantFlow::kWatchdog);
+    const std::span<const KnownValue> watchdog = flow_.values(ConstantFlow::kWatchdog);
     bool shorter = !watchdog.empty();
     for (const KnownValue& known : watchdog) shorter = shorter && known.value >= 0 && known.value < ms;
     if (shorter)
