@@ -146,7 +146,7 @@ void FunctionGenerator::emit_stmt(const checked::Switch& node, Span span) {
     const Hold hold(top_);
     const Operand selector = selector_of(node);
     if (selector.constant) {
-      const auto chosen = std::ranges::find(cases, selector.value, &Case::number);
+      const auto chosen = std::find_if(cases.begin(), cases.end(), [&](const Case& one) { return one.number == selector.value; });
       jump(chosen == cases.end() ? otherwise : chosen->label, span);
     } else if (options_.as_written) {
       compare_in_order(cases, selector.value, otherwise, node.value->span, span);

@@ -1,6 +1,7 @@
 // t[i].c = t[i].b * 2; computes 3 * i once: a temporary holds the number of the element, and one ADD moves it from one member to
 // the next. Only where the index is the same for all uses: nobody else writes its variables, nor does the statement before its end.
 #include <algorithm>
+#include <cstddef>
 
 #include "compiler/codegen/generator.hpp"
 #include "compiler/sema/walk.hpp"
@@ -57,8 +58,9 @@ void FunctionGenerator::find_pointers(const Expr& expr) {
   for (size_t n = 0; n < offsets.size(); ++n) {
     const Expr& offset = *offsets[n];
     const auto same = [&](const Expr* other) { return equal(offset, *other); };
-    if (!is_plain(offset) || as_constant(offset) != nullptr || std::any_of(offsets.begin(), offsets.begin() + n, same)) continue;
-    if (std::none_of(offsets.begin() + n + 1, offsets.end(), same)) continue;
+    const auto here = offsets.begin() + static_cast<std::ptrdiff_t>(n);
+    if (!is_plain(offset) || as_constant(offset) != nullptr || std::any_of(offsets.begin(), here, same)) continue;
+    if (std::none_of(here + 1, offsets.end(), same)) continue;
     bool same_for_all = true;
     checked::walk(offset, [&](const Expr& part) {
       const int32_t* variable = as_variable(part);

@@ -30,7 +30,7 @@ void FunctionGenerator::compare_in_order(std::span<const Case> cases, int32_t se
 }
 
 void FunctionGenerator::in_halves(std::vector<Case> cases, int32_t selector, int otherwise, Span at) {
-  if (cases.size() > kMostInOrder) std::ranges::sort(cases, {}, &Case::number);
+  if (cases.size() > kMostInOrder) std::sort(cases.begin(), cases.end(), [](const Case& a, const Case& b) { return a.number < b.number; });
   bisect(cases, selector, otherwise, at, INT32_MIN, INT32_MAX);
 }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
@@ -109,8 +108,8 @@ class Octets {
   friend bool operator==(const Octets& a, const Octets& b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end());
   }
-  friend auto operator<=>(const Octets& a, const Octets& b) {
-    return std::lexicographical_compare_three_way(a.begin(), a.end(), b.begin(), b.end());
+  friend bool operator<(const Octets& a, const Octets& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
   }
 
  private:
