@@ -28,7 +28,7 @@ function(ipos_not_hot target)
   if(IPOS_SANITIZE AND IPOS_TESTS AND NOT COLD_BUSY)
     target_compile_options(${target} PRIVATE -O0)
   elseif(EMSCRIPTEN)  # small, as it has to be sent
-    target_compile_options(${target} PRIVATE -Oz)
+    target_compile_options(${target} PRIVATE -Os)
   elseif(NOT IPOS_SANITIZE)
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
