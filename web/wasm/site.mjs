@@ -22,8 +22,29 @@ function packed(bytes) {
 const page = readFileSync(page_file, "utf8");
 const script = `${readFileSync(join(ipos_folder, "ipos.js"), "utf8")}\n${readFileSync(worker_file, "utf8")}`;
 
+// 13 bits in two of 91 characters: all from ! to ~ but ", < and \\. web/src/alone/packed.ts reads it.
+const digits = [...Array(94).keys()].map((n) => String.fromCharCode(33 + n)).filter((one) => !'"<\\'.includes(one));
+
+function textOf(bytes) {
+  let text = "";
+  let held = 0;
+  let bits = 0;
+  const put = () => (text += digits[Math.floor((held & 8191) / 91)] + digits[(held & 8191) % 91]);
+  for (const byte of bytes) {
+    held |= byte << bits;
+    bits += 8;
+    if (bits < 13) continue;
+    put();
+    held >>>= 13;
+    bits -= 13;
+  }
+  if (bits > 0) put();
+  return text;
+}
+
 function element(id, bytes) {
-  return `<script type="text/plain" id="${id}">${packed(bytes).toString("base64")}</script>\n`;
+  const small = packed(bytes);
+  return `<script type="text/plain" id="${id}" data-bytes="${small.length}">${textOf(small)}</script>\n`;
 }
 
 // Before the page's own script, which looks for them.
@@ -45,7 +66,7 @@ async function begin() {
 const rest = page.slice(place);
 const own = rest.slice(rest.indexOf("<script>") + "<script>".length, rest.lastIndexOf("</script>"));
 
-const alone = pageWith(element("ipos-wasm", readFileSync(join(ipos_folder, "ipos.wasm"))), rest.replace(own, () => `(${begin})()`).replace("<script>", () => `${element("ipos-page", own)}<script>`));
+const alone = pageWith(element("ipos-wasm", readFileSync(join(ipos_folder, "ipos.wasm"))), rest.replace(own, () => `(${begin})()`).replace("<script>", () => `<script type="text/plain" id="ipos-page">${packed(own).toString("base64")}</script>\n<script>`));
 writeFileSync(join(out, "ipos.html"), alone);
 writeFileSync(
   join(out, "site/index.html"),
