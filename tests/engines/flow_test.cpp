@@ -290,7 +290,8 @@ TEST(Flow, TheWayMostTakenNeedsNoCorrection) {
   }
 }
 
-// SETI most likely leads to the table whose beginning was added to the index last, or that it is set to anywhere.
+// SETI most likely leads to where a copy of an index stands in its table; else to the table whose beginning was added to the
+// index last, or that it is set to anywhere.
 TEST(Flow, TablesAreWhatIsAddedToTheIndex) {
   const auto add = [](int32_t to, int32_t k) { return I(Opcode::AddHK, to, k); };
   const auto set = [](int32_t to, int32_t from) { return I(Opcode::SetHH, to, from); };
@@ -318,6 +319,10 @@ TEST(Flow, TablesAreWhatIsAddedToTheIndex) {
       {"added behind the copy", {add(3, 30), set(2, 3), add(2, 40)}, 40},
       {"added to another behind the copy", {add(3, 40), set(2, 3), add(3, 30)}, 40},
       {"added before the copy to what is overwritten", {add(2, 40), set(2, 3)}, -1},
+      {"a copy serves two elements of a table", {set(2, 3), add(2, 40), add(2, 1)}, 41},
+      {"and the one in front", {set(2, 3), add(2, 40), add(2, 1), add(2, -2)}, 39},
+      {"a copy goes on to another table", {set(2, 3), add(2, 40), add(2, -33)}, 7},
+      {"a copy that has gone beyond", {set(2, 3), add(2, 40), add(2, 30)}, 30},
       {"taken away", {I(Opcode::SubHK, 2, 40)}, -1},
       {"set", {set_k(2, 40)}, 40},
       {"set before, and a step", {set_k(2, 40), add(2, 1)}, 40},
@@ -333,6 +338,12 @@ TEST(Flow, TablesAreWhatIsAddedToTheIndex) {
   for (const size_t between : {0U, 6U, 7U, 8U}) {
     Row row{"far away", Commands(between, kNop), between <= 7 ? 40 : -1};
     row.in_front.insert(row.in_front.begin(), add(2, 40));
+    rows.push_back(row);
+  }
+  // And 32 where it was copied.
+  for (const size_t between : {30U, 31U}) {
+    Row row{"copied far away", Commands(between, kNop), between <= 30 ? 40 : -1};
+    row.in_front.insert(row.in_front.begin(), {set(2, 3), add(2, 40)});
     rows.push_back(row);
   }
   for (const Row& row : rows)

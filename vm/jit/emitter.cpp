@@ -15,6 +15,19 @@ using asmjit::Label;
 constexpr uint32_t kLoopAlignment = 32;
 constexpr uint32_t kShortestSwitch = 4;
 
+// Whether a comparison with a constant jumps; nothing for other commands.
+std::optional<bool> holds(Opcode opcode, int32_t value, int32_t constant) {
+  switch (opcode) {
+    case Opcode::JmpEqHK: return value == constant;
+    case Opcode::JmpNeHK: return value != constant;
+    case Opcode::JmpLtHK: return value < constant;
+    case Opcode::JmpLeHK: return value <= constant;
+    case Opcode::JmpGtHK: return value > constant;
+    case Opcode::JmpGeHK: return value >= constant;
+    default: return std::nullopt;
+  }
+}
+
 bool sets(const Instruction& command, int32_t variable) {
   return named_target(command).has(static_cast<uint32_t>(variable));
 }
@@ -243,11 +256,14 @@ std::optional<Emitter::Decided> Emitter::decide(const std::optional<Known>& know
       same.push_back(operands[0]);
       continue;
     }
-    const bool equal = command.instruction.opcode == Opcode::JmpEqHK;
-    if (!equal && command.instruction.opcode != Opcode::JmpNeHK) break;
-    if (!is_same(operands[0])) break;
+    if (command.flow == Flow::Jump && tested) {
+      out.end = command.target;
+      continue;
+    }
+    const std::optional<bool> jumps = holds(command.instruction.opcode, known->value, operands[1]);
+    if (!jumps || !is_same(operands[0])) break;
     tested = true;
-    out.end = (operands[1] == known->value) == equal ? command.target : out.end + 1;
+    out.end = *jumps ? command.target : out.end + 1;
   }
   if (!tested || !program_.commands[out.end].joins) return std::nullopt;
   return out;

@@ -153,9 +153,10 @@ void Program::count() {
     if (commands[n].checks && !commands[n].called) commands[n].arrival = std::max(by_branch[n].credit, 0);
 }
 
-// The constant that was added to the index last, or one that it is set to anywhere.
+// What has been added to the copy of an index, also where one copy serves several elements in turn; else the constant that was
+// added to the index last, or one that it is set to anywhere.
 void Program::find_tables() {
-  constexpr uint32_t kLook = 8;
+  constexpr uint32_t kLook = 8, kLookForCopy = 32;
   const auto is_variable = [&](int32_t number) { return static_cast<uint32_t>(number) < limits.variables; };
   std::vector<int32_t> set_to(limits.variables, -1);
   for (const Command& command : commands) {
@@ -169,14 +170,21 @@ void Program::find_tables() {
     if (opcode != Opcode::SetiLoad && opcode != Opcode::SetiStore) continue;
     int32_t& table = commands[n].table;
     int32_t variable = commands[n].instruction.operands[opcode == Opcode::SetiLoad ? 1 : 0];
-    for (uint32_t back = n; table < 0 && back-- > 0 && back + kLook >= n;) {
+    int64_t added = 0;   // to the variable, back to where it became a copy
+    int32_t near = -1;   // what was added to it last. A step of 1 belongs to a pointer
+    for (uint32_t back = n; table < 0 && back-- > 0 && back + kLookForCopy >= n;) {
       const Instruction& command = commands[back].instruction;
       if (command.operands[0] != variable) continue;
-      // A step of 1 belongs to a pointer.
-      if (command.opcode == Opcode::AddHK && command.operands[1] != 1 && is_variable(command.operands[1]))
-        table = command.operands[1];
-      if (command.opcode == Opcode::SetHH) variable = command.operands[1];
+      if (command.opcode == Opcode::AddHK) {
+        added += command.operands[1];
+        if (near < 0 && command.operands[1] != 1 && is_variable(command.operands[1]) && back + kLook >= n) near = command.operands[1];
+      } else if (command.opcode == Opcode::SetHH) {
+        if (near >= 0 || added > 1) table = added > 1 && added < limits.variables ? static_cast<int32_t>(added) : near;
+        variable = command.operands[1];
+        added = 0;
+      }
     }
+    if (table < 0) table = near;
     if (table < 0) table = set_to[static_cast<size_t>(variable)];
   }
 }
