@@ -10,7 +10,6 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <new>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,20 +17,7 @@
 #include "compiler/compile.hpp"
 #include "compiler/diag/render.hpp"
 #include "tests/bench/dense_program.hpp"
-
-namespace {
-
-size_t allocations = 0;  // one thread
-
-}  // namespace
-
-void* operator new(size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, size_t) noexcept { std::free(memory); }
+#include "tests/harness/allocations.hpp"
 
 namespace {
 
@@ -88,9 +74,9 @@ int main(int argc, char** argv) {
   const std::string source = bench::dense_program();
   if (mode == "--source") return std::fputs(source.c_str(), stdout) < 0;
 
-  const size_t before = allocations;
+  const size_t before = tests::allocations();
   const compiler::Compilation first = compile(source);
-  const size_t used = allocations - before;
+  const size_t used = tests::allocations() - before;
   if (!first.image || !first.diagnostics.all().empty()) {
     std::fputs(compiler::render_text(first.diagnostics.all(), *first.sources, false).c_str(), stderr);
     return 1;

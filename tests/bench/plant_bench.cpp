@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <new>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,19 +16,8 @@
 #include "compiler/compile.hpp"
 #include "compiler/diag/render.hpp"
 #include "runtime/plant/plant.hpp"
+#include "tests/harness/allocations.hpp"
 #include "tools/input/engine.hpp"
-
-namespace {
-size_t allocations = 0;
-}  // namespace
-
-[[gnu::noinline]] void* operator new(size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  std::abort();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, size_t) noexcept { std::free(memory); }
 
 namespace ipos {
 namespace {
@@ -228,7 +216,7 @@ void measure(const Kind& kind, int drives, bool bus, int seconds, const std::str
   plant->run_until(runtime::kSecond);  // everything runs, no vector grows any more
   const uint64_t frames_before = frames.count;
   const uint64_t commands_before = commands(*plant);
-  const size_t allocations_before = allocations;
+  const size_t allocations_before = tests::allocations();
   const double begin = cpu_seconds();
   plant->run_until((1 + seconds) * runtime::kSecond);
   const double used = cpu_seconds() - begin;
@@ -238,7 +226,7 @@ void measure(const Kind& kind, int drives, bool bus, int seconds, const std::str
       kind.name, bus ? ", frames" : "", drives, seconds / used,
       (frames.count - frames_before) / static_cast<uint64_t>(seconds),
       (commands(*plant) - commands_before) / static_cast<uint64_t>(seconds),
-      static_cast<double>(allocations - allocations_before) / seconds);
+      static_cast<double>(tests::allocations() - allocations_before) / seconds);
   std::fflush(stdout);
 }
 

@@ -3,26 +3,13 @@
 // what happens in every second.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <new>
 #include <string>
 
+#include "tests/harness/allocations.hpp"
 #include "tests/runtime/plant/plant_rig.hpp"
-
-namespace {
-size_t allocations = 0;
-}  // namespace
-
-[[gnu::noinline]] void* operator new(size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  std::abort();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, size_t) noexcept { std::free(memory); }
 
 namespace ipos::tests {
 namespace {
@@ -51,9 +38,9 @@ TEST_P(Allocations, ARunningPlantMakesNone) {
   const auto plant = make_plant(text_of(folder / GetParam().plant), programs);
   ASSERT_TRUE(plant);
   plant->run_until(GetParam().from);
-  const size_t before = allocations;
+  const size_t before = allocations();
   plant->run_until(GetParam().from + runtime::kSecond);
-  EXPECT_EQ(allocations - before, 0U) << GetParam().bus;
+  EXPECT_EQ(allocations() - before, 0U) << GetParam().bus;
 }
 
 std::string name_of(const ::testing::TestParamInfo<Row>& row) {
