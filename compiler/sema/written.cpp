@@ -17,34 +17,54 @@ void mark(Numbers& numbers, const checked::Place& place, const std::optional<Num
   if (within) mark(numbers, within->low, within->size());
 }
 
+std::optional<size_t> called_by(const checked::Expr& expr) {
+  const auto reference = reference_of(expr);
+  if (!reference || reference->kind != ReferenceKind::Call) return std::nullopt;
+  return reference->function;
+}
+
 }  // namespace
 
+// Each function by itself, then what those write that it calls, until nothing is new: functions may call each other in a circle.
+Written::Written(const checked::Program& program) : of_(program.functions.size()) {
+  std::vector<std::vector<size_t>> calls(of_.size());
+  for (size_t n = 0; n < of_.size(); ++n) {
+    if (program.functions[n].body == nullptr) continue;
+    checked::walk(*program.functions[n].body, [&](const checked::Expr& inner) {
+      add_one(inner, of_[n]);
+      if (const auto called = called_by(inner)) calls[n].push_back(*called);
+    });
+  }
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (size_t n = of_.size(); n-- > 0;) {
+      const Numbers before = of_[n];
+      for (const size_t called : calls[n]) of_[n] |= of_[called];
+      changed |= of_[n] != before;
+    }
+  }
+}
+
+// Without what is called.
 void Written::add_one(const checked::Expr& expr, Numbers& numbers) {
   if (const auto* node = std::get_if<checked::Step>(&expr.node)) mark(numbers, node->place, node->within);
   if (const auto* node = std::get_if<checked::Assign>(&expr.node)) mark(numbers, node->target, node->within);
   if (const auto* node = std::get_if<checked::CopyBlock>(&expr.node)) mark(numbers, node->target, node->count);
   if (const auto* node = std::get_if<checked::SystemCall>(&expr.node))
     written_blocks(*node, [&](uint32_t first, uint32_t count) { mark(numbers, first, count); });
-  if (const auto reference = reference_of(expr); reference && reference->kind == ReferenceKind::Call)
-    numbers |= of(reference->function);
 }
 
-void Written::add(const checked::Expr& expr, Numbers& numbers) {
-  checked::walk(expr, [&](const checked::Expr& inner) { add_one(inner, numbers); });
+void Written::add_whole(const checked::Expr& expr, Numbers& numbers) const {
+  add_one(expr, numbers);
+  if (const auto called = called_by(expr)) numbers |= of(*called);
 }
 
-void Written::add(const checked::Stmt& stmt, Numbers& numbers) {
-  checked::walk(stmt, [&](const checked::Expr& inner) { add_one(inner, numbers); });
+void Written::add(const checked::Expr& expr, Numbers& numbers) const {
+  checked::walk(expr, [&](const checked::Expr& inner) { add_whole(inner, numbers); });
 }
 
-// Of functions that call each other in a circle, each knows what those behind it write.
-const Numbers& Written::of(size_t function) {
-  if (of_[function].known) return of_[function].numbers;
-  of_[function].known = true;
-  Numbers numbers;
-  if (program_.functions[function].body != nullptr) add(*program_.functions[function].body, numbers);
-  of_[function].numbers = numbers;
-  return of_[function].numbers;
+void Written::add(const checked::Stmt& stmt, Numbers& numbers) const {
+  checked::walk(stmt, [&](const checked::Expr& inner) { add_whole(inner, numbers); });
 }
 
 }  // namespace ipos::compiler

@@ -13,22 +13,18 @@ using Numbers = std::bitset<kMaxNumbers>;
 
 class Written {
  public:
-  explicit Written(const checked::Program& program) : program_(program), of_(program.functions.size()) {}
+  explicit Written(const checked::Program& program);
 
   // What a pointer writes is not among it: whose number is taken must be looked up beside.
-  void add(const checked::Stmt& stmt, Numbers& numbers);
-  void add(const checked::Expr& expr, Numbers& numbers);
-  const Numbers& of(size_t function);
+  void add(const checked::Stmt& stmt, Numbers& numbers) const;
+  void add(const checked::Expr& expr, Numbers& numbers) const;
+  const Numbers& of(size_t function) const { return of_[function]; }
 
  private:
-  struct Function {
-    bool known = false;
-    Numbers numbers;
-  };
-  void add_one(const checked::Expr& expr, Numbers& numbers);
+  static void add_one(const checked::Expr& expr, Numbers& numbers);
+  void add_whole(const checked::Expr& expr, Numbers& numbers) const;
 
-  const checked::Program& program_;
-  std::vector<Function> of_;
+  std::vector<Numbers> of_;
 };
 
 }  // namespace ipos::compiler

@@ -211,6 +211,10 @@ const MachineMistake kMachineMistakes[] = {
      "m.Service = ML_S_RD; m.Index = 8470; m.DPointer = numof(d);\n_MoviLink(m);\nH1 = d.ReadPar; }",
      {"6 W0288"}},
     {"LoopThatNeverRuns", "long i;\nmain() {\nfor (i = 10; i < 5; i++) H1++; }", {"3 W0289"}},
+    {"LoopThatACircleOfFunctionsEnds",
+     "long i, n;\neven() { i++; if (n) odd(); }\nodd() { n = n - 1; if (n > 0) even(); }\nmain() {\neven(); i = 0; n = 30;\n"
+     "while (i < 5) odd(); }",
+     {"2 W0209"}},
     {"LoopThatNeverEnds", "long i;\nmain() {\ni = 0;\nwhile (i < 5) H1++; }", {"4 W0290"}},
     {"LoopThatACallEnds", "long i;\nmain() {\ni = 0;\nwhile (i < 5) Next(); }\nNext() { i++; }", {}},
     {"LoopThatATaskEnds",
