@@ -125,8 +125,9 @@ void Plant::disturb_lines() {
       wanted.per_mille = disturbance.per_mille;
       wanted.of_line = true;
       FaultConfig fault = bus->make_fault(wanted);
-      bus->plant(fault);
       fault.bus = bus->name();
+      fault.begin_at(0, file_.line_seed);
+      bus->plant(fault);
       of_lines_.push_back(std::move(fault));
       journal_.note(queue_.now(), Weight::Warning, "",
                     fmt::format("{}: {}: {} of 1000 {}s are disturbed (how many is a choice of ipos)", bus->name(),

@@ -57,10 +57,8 @@ void read_plant_sections(PlantReader& reader, const toml::table& root,
 }
 
 void move_seeds(PlantFile& plant, uint64_t by) {
-  for (FaultConfig& fault : plant.faults) {
-    fault.fault.seed += by;
-    if (fault.profibus) fault.profibus->seed += by;
-  }
+  for (FaultConfig& fault : plant.faults) fault.begin_at(0, by);
+  plant.line_seed += by;
   constexpr uint32_t kFarApart = 2'654'435'769U;  // odd, so that no two are the same
   for (StationConfig& station : plant.stations)
     station.machine.noise_seed += static_cast<uint32_t>(by) * kFarApart;

@@ -200,6 +200,7 @@ struct PlantFile {
   std::vector<LightBarrier> barriers;
   std::vector<MachineConfig> machines;
   std::vector<Expectation> expectations;
+  uint64_t line_seed = 0;            // by how much that of what lines disturb by themselves has been moved
   size_t expectations_of_tests = 0;  // [[expect]] of kinds that only `ipos test` looks at
 };
 
@@ -225,7 +226,8 @@ struct PlantFileResult {
 // The path decides only whether a file with nothing but the name of a plant is a test or a campaign (toml_kind.hpp).
 PlantFileResult read_plant_file(std::string_view text, std::string_view path = {});
 
-// Another seed for all that goes by chance: line faults and the noise of actual values. By 0 nothing changes.
+// Another seed for all that goes by chance: line faults, what lines disturb by themselves, and the noise of actual
+// values. By 0 nothing changes.
 void move_seeds(PlantFile& plant, uint64_t by);
 
 // The [[fault]] tables of a text, for a plant that is there; the result has only them.
