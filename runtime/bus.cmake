@@ -22,7 +22,7 @@ bus_layer(can
   SOURCES identifier_text.cpp bit_error.cpp clash.cpp line_fault.cpp line_strangers.cpp line_wiring.cpp line_repeats.cpp line_report.cpp
   HOT frame_bits.cpp transfer.cpp line.cpp contenders.cpp
   USES bus_line clock)
-bus_layer(rs485 SOURCES levels.cpp HOT line.cpp USES bus_line clock)
+bus_layer(rs485 SOURCES levels.cpp octet_fault.cpp bit_fault.cpp line_faults.cpp HOT line.cpp USES bus_line clock)
 # What a unit says on a line, and who asks it.
 bus_layer(movilink BATCH 12  # SBus, and the serial line: some names are in both
   SOURCES parameter_telegram.cpp return_code.cpp profile.cpp unit_servers.cpp sbus_master.cpp sbus_control.cpp

@@ -11,6 +11,9 @@ namespace ipos::runtime {
 // Stations, baud rates, length, termination, cable, planted cable faults.
 void check_cable(const LineRoster& roster, const PlantFile& file, std::vector<Finding>& findings);
 
+// Planted cable faults of RS-485, RS-232 and PROFIBUS.
+void check_octet_faults(const PlantFile& file, const BusConfig& bus, std::vector<Finding>& findings);
+
 // Addresses, identifiers, MOVLNK partners, master/slave operation, who follows process data.
 void check_profile(const LineRoster& roster, const LinePlan& plan, std::vector<Finding>& findings);
 

@@ -2,6 +2,7 @@
 #include "runtime/bus_plan/profibus_lines.hpp"
 
 #include "runtime/bus/profibus/line_plan.hpp"
+#include "runtime/bus_plan/checks.hpp"
 #include "runtime/plant_file/profibus_paper.hpp"
 
 namespace ipos::runtime {
@@ -15,6 +16,7 @@ ProfibusLinePlan plan_line(const PlantFile& file, const BusConfig& bus, std::vec
   };
   tell(profibus_master_findings(file, bus));
   tell(profibus::check_plan(paper));
+  check_octet_faults(file, bus, findings);
   ProfibusLinePlan line;
   line.name = bus.name;
   line.baud = bus.baud;

@@ -7,6 +7,7 @@
 
 #include "runtime/bus/movilink/format.hpp"
 #include "runtime/bus/rs485/line.hpp"
+#include "runtime/bus_plan/checks.hpp"
 #include "runtime/plant_file/serial_plan.hpp"
 
 namespace ipos::runtime {
@@ -25,6 +26,7 @@ class LinePlanner {
 
   void run(const SerialWatcher::Line& seen) {
     stations();
+    cable();
     telegrams(seen);
     if (seen.masters.size() > 1)
       find(FindingKind::SeveralMasters,
@@ -43,6 +45,13 @@ class LinePlanner {
       if (config.serial.x13.bus == bus_.name) add(*station, "X13", kX13Baud);
       if (config.serial.xt.bus == bus_.name) add(*station, "XT", xt_baud(config));
     }
+  }
+
+  void cable() {
+    using Rule = SerialCableFinding::Rule;
+    for (SerialCableFinding& finding : serial_cable_findings(plant_.file(), bus_))
+      find(finding.rule == Rule::TooLong ? FindingKind::LineTooLong : FindingKind::Termination, std::move(finding.text));
+    check_octet_faults(plant_.file(), bus_, plan_.findings);
   }
 
   void add(const Station& station, const char* socket, uint32_t baud) {

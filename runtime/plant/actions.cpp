@@ -7,15 +7,15 @@ namespace ipos::runtime {
 
 bool are_alike(const FaultConfig& one, const FaultConfig& other) {
   const auto kind = [](const FaultConfig& fault) {
-    return fault.profibus ? static_cast<int>(fault.profibus->kind) : static_cast<int>(fault.fault.kind);
+    return fault.octets ? static_cast<int>(fault.octets->kind) : static_cast<int>(fault.fault.kind);
   };
-  return one.bus == other.bus && one.station == other.station && one.profibus.has_value() == other.profibus.has_value() &&
+  return one.bus == other.bus && one.station == other.station && one.octets.has_value() == other.octets.has_value() &&
          kind(one) == kind(other) && one.fault.id == other.fault.id;
 }
 
 bool is_active(const FaultConfig& fault, Time now) {
   const auto within = [now](const auto& part) { return part.from <= now && now < part.until; };
-  return fault.profibus ? within(*fault.profibus) : within(fault.fault);
+  return fault.octets ? within(*fault.octets) : within(fault.fault);
 }
 
 Refusal PlantActions::set(const signals::Signal& signal, int64_t value) { return signal.write(value); }

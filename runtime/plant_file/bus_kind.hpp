@@ -5,6 +5,8 @@
 #include <span>
 #include <string_view>
 
+#include "runtime/bus/rs485/octet_fault.hpp"
+
 namespace ipos::runtime {
 
 enum class BusKind : uint8_t {
@@ -13,6 +15,16 @@ enum class BusKind : uint8_t {
 };
 
 constexpr bool is_serial(BusKind kind) { return kind == BusKind::Rs485 || kind == BusKind::Rs232; }
+constexpr bool carries_octets(BusKind kind) { return is_serial(kind) || kind == BusKind::Profibus; }
+
+// Of one that carries octets.
+constexpr OctetLine octet_line_of(BusKind kind) {
+  switch (kind) {
+    case BusKind::Rs232: return OctetLine::Rs232;
+    case BusKind::Rs485: return OctetLine::Rs485;
+    default: return OctetLine::Profibus;
+  }
+}
 
 struct BusKindInfo {
   BusKind kind;

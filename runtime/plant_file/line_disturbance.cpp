@@ -8,6 +8,7 @@
 #include "runtime/bus/profibus/line_plan.hpp"
 #include "runtime/plant_file/can_cable.hpp"
 #include "runtime/plant_file/profibus_paper.hpp"
+#include "runtime/plant_file/serial_plan.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -33,12 +34,28 @@ Cable profibus_cable(const PlantFile& file, const BusConfig& bus) {
   return cable;
 }
 
+Cable serial_cable(const PlantFile& file, const BusConfig& bus) {
+  Cable cable{serial_length_limit(file, bus) / 1000};
+  for (const SerialCableFinding& finding : serial_cable_findings(file, bus))
+    cable.wrong_ends += finding.rule == SerialCableFinding::Rule::Terminated;
+  return cable;
+}
+
 Cable cable_of(const PlantFile& file, const BusConfig& bus) {
   switch (bus.kind) {
     case BusKind::Can: return can_cable(file, bus);
     case BusKind::Profibus: return profibus_cable(file, bus);
+    case BusKind::Rs485:
+    case BusKind::Rs232: return serial_cable(file, bus);
     default: return {};
   }
+}
+
+// Lines of RS-485 and RS-232 have a resistor in each unit, so only one more can be wrong.
+std::string cause_of_terminators(const BusConfig& bus, const Cable& cable) {
+  if (is_serial(bus.kind)) return "there are terminating resistors beside those of the units";
+  if (cable.wrong_ends == 1) return "a terminating resistor is not where it must be";
+  return fmt::format("{} terminating resistors are not where they must be", cable.wrong_ends);
 }
 
 }  // namespace
@@ -60,9 +77,7 @@ std::vector<LineDisturbance> line_disturbances(const PlantFile& file, const BusC
   if (const uint32_t share = share_of_length(bus.length_mm, cable.limit_m); share != 0)
     found.push_back({"length", share, fmt::format("the line is longer than {} m", cable.limit_m)});
   if (const uint32_t share = share_of_terminators(cable.wrong_ends); share != 0)
-    found.push_back({"terminator", share,
-                     cable.wrong_ends == 1 ? "a terminating resistor is not where it must be"
-                                           : fmt::format("{} terminating resistors are not where they must be", cable.wrong_ends)});
+    found.push_back({bus.kind == BusKind::Rs232 ? "noise" : "terminator", share, cause_of_terminators(bus, cable)});
   return found;
 }
 

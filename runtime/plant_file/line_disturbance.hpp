@@ -26,7 +26,7 @@ uint32_t share_of_length(uint32_t length_mm, uint32_t limit_m);
 // Each switch that is not as it must be costs half of the frames (ours).
 uint32_t share_of_terminators(size_t wrong);
 
-// A line of RS-485 is refused with what would disturb it.
+// RS-485 and RS-232 may have the same length at every rate (1053 1610 p. 5, 8, 14-15; MDX60B/61B p. 12-15).
 std::vector<LineDisturbance> line_disturbances(const PlantFile& file, const BusConfig& bus);
 
 }  // namespace ipos::runtime

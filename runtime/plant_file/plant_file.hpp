@@ -13,6 +13,7 @@
 #include "runtime/bus/can/line_fault.hpp"
 #include "runtime/bus/canopen/master.hpp"
 #include "runtime/bus/movilink/sbus_control.hpp"
+#include "runtime/bus/rs485/octet_fault.hpp"
 #include "runtime/drive/parameters.hpp"
 #include "runtime/drive/setpoint.hpp"
 #include "runtime/motion/machine_data.hpp"
@@ -130,7 +131,7 @@ struct FaultConfig {
   std::string bus;
   std::string station;  // empty: all
   LineFault fault;      // of an SBus
-  std::optional<profibus::LineFault> profibus{};
+  std::optional<OctetFault> octets{};  // of a line of another kind
   FilePlace place;
 
   // Its times count from `start` on.
@@ -141,7 +142,7 @@ struct FaultConfig {
       moved.seed += more_seed;
     };
     move(fault);
-    if (profibus) move(*profibus);
+    if (octets) move(*octets);
   }
 };
 

@@ -130,13 +130,13 @@ void read_foreign_machines(PlantReader& reader, const toml::table& root);
 // Of a [[switch]] with part_at, all but its input and its active level.
 void read_barrier(PlantReader& reader, const toml::table& table, LightBarrier barrier);
 void read_profibus_card(PlantReader& reader, const toml::table& table, StationConfig& config);
-void read_profibus_fault(PlantReader& reader, const toml::table& table);
 void read_profibus_master(PlantReader& reader, const toml::table& table, ControlConfig& control);
 void read_fms_master(PlantReader& reader, const toml::table& table, ControlConfig& control);
 void read_controls(PlantReader& reader, const toml::table& root);
 // Of a [[control]] with kind = "canopen", all but what every control has.
 canopen::MasterSettings read_canopen_master(PlantReader& reader, const toml::table& table);
 void read_faults(PlantReader& reader, const toml::table& root);
+void read_octet_fault(PlantReader& reader, const toml::table& table, BusKind line);  // of a bus of this kind
 void read_surroundings(PlantReader& reader, const toml::table& root);  // stimulus, wire, switch; after the machines
 void read_expectations(PlantReader& reader, const toml::table& root);
 

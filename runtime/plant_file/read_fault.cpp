@@ -1,4 +1,4 @@
-// [[fault]] of the plant file: what is done to a line.
+// [[fault]] of the plant file: what is done to a line; those of a CAN line.
 #include <algorithm>
 
 #include "runtime/plant_file/plant_reader.hpp"
@@ -65,10 +65,10 @@ void read_fault_baud(PlantReader& reader, const toml::table& table, FaultConfig&
 void read_fault(PlantReader& reader, const toml::table& table) {
   const auto& buses = reader.result.plant.buses;
   const std::string bus = table["bus"].value_or(std::string());
-  if (std::any_of(buses.begin(), buses.end(), [&](const BusConfig& candidate) {
-        return candidate.name == bus && candidate.kind == BusKind::Profibus;
-      }))
-    return read_profibus_fault(reader, table);
+  const auto octets = std::find_if(buses.begin(), buses.end(), [&](const BusConfig& candidate) {
+    return candidate.name == bus && carries_octets(candidate.kind);
+  });
+  if (octets != buses.end()) return read_octet_fault(reader, table, octets->kind);
   reader.known_keys(
       table, "[[fault]]",
       {"bus", "kind", "station", "behind", "id", "frame", "rate", "seed", "from", "until", "delay", "baud"});

@@ -1,4 +1,4 @@
-// PROFIBUS in the plant file: the card of a [[station]], a [[control]] that is a master, a [[fault]] of the line.
+// PROFIBUS in the plant file: the card of a [[station]], a [[control]] that is a master.
 #include <algorithm>
 
 #include "runtime/bus/profibus/card.hpp"
@@ -76,12 +76,6 @@ bool find_factors(Time watchdog, profibus::PrmData& prm) {
       return true;
     }
   return false;
-}
-
-std::string fault_words() {
-  std::vector<std::string_view> words;
-  for (const profibus::LineFaultType& type : profibus::line_fault_types()) words.push_back(type.word);
-  return fmt::format("{}", fmt::join(words, ", "));
 }
 
 class MasterReader {
@@ -247,41 +241,6 @@ void read_profibus_card(PlantReader& reader, const toml::table& table, StationCo
     reader.error(use.bus.place, "profibus needs option = \"...\", the card that is fitted");
   if (!table.contains("profibus_address"))
     reader.error(use.bus.place, "profibus needs profibus_address = ..., as its switches are set");
-}
-
-void read_profibus_fault(PlantReader& reader, const toml::table& table) {
-  reader.known_keys(table, "[[fault]] of a PROFIBUS line",
-                    {"bus", "kind", "station", "frame", "rate", "seed", "from", "until"});
-  FaultConfig config;
-  config.place = place_of(table.source());
-  config.bus = reader.bus_use(table, "bus", BusKind::Profibus).bus;
-  config.station = reader.station_name(table, "station");
-  profibus::LineFault& fault = config.profibus.emplace();
-  const std::string word = reader.text(table, "kind", "a [[fault]]", true);
-  if (const auto kind = profibus::find_line_fault(word))
-    fault.kind = *kind;
-  else if (!word.empty())
-    reader.error(
-        place_of(*table.get("kind")),
-        fmt::format("'{}' is no fault of a PROFIBUS line; known are {}", word, fault_words()));
-  const bool of_station = profibus::line_fault_type(fault.kind).scope == profibus::LineFaultScope::Station;
-  if (of_station && config.station.empty())
-    reader.error(config.place, fmt::format("a fault '{}' needs station = \"...\"", word));
-  for (const char* key : {"frame", "rate", "seed"})
-    if (const toml::node* node = table.get(key); node != nullptr && of_station)
-      reader.error(place_of(*node), fmt::format("{} does not belong to a fault '{}'", key, word));
-  const bool counted = table.contains("frame");  // a wrong number is told once, and then goes as the first
-  fault.frame = reader.count(table, "frame", INT32_MAX, counted ? 1 : 0);
-  fault.per_mille = reader.count(table, "rate", 1000, 1000);
-  fault.seed = reader.count(table, "seed", INT32_MAX, 1);
-  if (counted && (fault.frame == 0 || table.contains("rate")))
-    reader.error(place_of(*table.get("frame")),
-                 "a fault strikes the n-th frame, counted from 1, or a rate of them");
-  fault.from = reader.duration(table, "from", 0);
-  fault.until = reader.duration(table, "until", kNever);
-  if (fault.from >= 0 && fault.until >= 0 && fault.until <= fault.from)
-    reader.error(config.place, "until must be after from");
-  reader.result.plant.faults.push_back(std::move(config));
 }
 
 void read_profibus_master(PlantReader& reader, const toml::table& table, ControlConfig& control) {

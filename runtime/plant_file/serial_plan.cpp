@@ -120,13 +120,6 @@ class Checker {
     if (one_to_one && (stations.all.size() > 2 || slaves > 1))
       error(bus.place, fmt::format("'{}' connects one master and one slave, not {} stations", bus.name,
                                    stations.all.size()));
-    const LengthLimit limit = length_limit(bus, stations);
-    if (bus.length_mm > limit.mm)
-      error(bus.place, fmt::format("'{}' is {} m long; a {} may have {} m", bus.name, metres(bus.length_mm),
-                                   limit.of, metres(limit.mm)));
-    if (bus.terminated)
-      error(bus.place,
-            fmt::format("'{}': the units have terminating resistors; connect no others", bus.name));
     if (bus.kind == BusKind::Rs485) check_cable(bus);
   }
 
@@ -227,6 +220,17 @@ bool sends_setpoints(int32_t p750) {
 
 uint32_t serial_length_limit(const PlantFile& plant, const BusConfig& bus) {
   return length_limit(bus, stations_of(plant, bus.name)).mm;
+}
+
+std::vector<SerialCableFinding> serial_cable_findings(const PlantFile& plant, const BusConfig& bus) {
+  std::vector<SerialCableFinding> found;
+  const LengthLimit limit = length_limit(bus, stations_of(plant, bus.name));
+  if (bus.length_mm > limit.mm)
+    found.push_back({SerialCableFinding::Rule::TooLong, fmt::format("{} m of cable, a {} may have {} m",
+                                                                    metres(bus.length_mm), limit.of, metres(limit.mm))});
+  if (bus.terminated)
+    found.push_back({SerialCableFinding::Rule::Terminated, "the units have terminating resistors; connect no others"});
+  return found;
 }
 
 std::vector<PlantError> check_serial_plan(const PlantFile& plant) { return Checker(plant).run(); }

@@ -1,6 +1,6 @@
 // Planning checks of the RS-485 side of a plant (1053 1610 p. 5-8, 14-15; MDX60B/61B p. 8-19, 29-30): what
 // cannot be wired is an error of the plant file, what will hardly work as meant is told when the plant
-// starts.
+// starts: settings of stations, and a cable that disturbs telegrams.
 #pragma once
 
 #include <functional>
@@ -28,6 +28,14 @@ uint32_t xt_baud(const StationConfig& station);
 
 // How long a line of the plant may be, in mm.
 uint32_t serial_length_limit(const PlantFile& plant, const BusConfig& bus);
+
+// What of its cable disturbs telegrams, on RS-485 and RS-232 alike.
+struct SerialCableFinding {
+  enum class Rule : uint8_t { TooLong, Terminated };
+  Rule rule;
+  std::string text;
+};
+std::vector<SerialCableFinding> serial_cable_findings(const PlantFile& plant, const BusConfig& bus);
 
 std::vector<PlantError> check_serial_plan(const PlantFile& plant);
 

@@ -8,6 +8,7 @@
 
 #include "runtime/bus/profibus/frame_text.hpp"
 #include "runtime/plant_file/profibus_paper.hpp"
+#include "runtime/station/octet_faults.hpp"
 #include "runtime/station/profibus_octets.hpp"
 
 namespace ipos::runtime {
@@ -53,12 +54,6 @@ FmsOperator& ProfibusBus::fms_operator(const std::set<uint8_t>& taken) {
   return *fms_operator_;
 }
 
-NodeId ProfibusBus::find_node(const std::string& station) const {
-  for (NodeId node = 0; node < line_.node_count() && !station.empty(); ++node)
-    if (line_.node_name(node) == station) return node;
-  return kNoNode;
-}
-
 std::vector<std::string> ProfibusBus::findings(const PlantFile& file) const {
   std::vector<std::string> texts = check_line(profibus_paper(file, config()));
   for (std::string& text : profibus_master_findings(file, config())) texts.push_back(std::move(text));
@@ -66,33 +61,19 @@ std::vector<std::string> ProfibusBus::findings(const PlantFile& file) const {
 }
 
 std::vector<FaultRule> ProfibusBus::fault_rules() const {
-  std::vector<FaultRule> rules;
-  for (const profibus::LineFaultType& type : profibus::line_fault_types()) {
-    const bool of_frames = type.scope == profibus::LineFaultScope::Frame;
-    rules.push_back({type.word, type.text, of_frames ? FaultPlace::Either : FaultPlace::Station, of_frames, false});
-  }
-  return rules;
+  return octet_fault_rules(OctetLine::Profibus);
 }
 
 FaultConfig ProfibusBus::make_fault(const WantedFault& wanted) const {
-  FaultConfig config;
-  profibus::LineFault& fault = config.profibus.emplace();
-  fault.kind = *profibus::find_line_fault(wanted.word);
-  fault.per_mille = wanted.per_mille;
-  fault.from = wanted.from;
-  return config;
+  return make_octet_fault(wanted, OctetLine::Profibus);
 }
 
 bool ProfibusBus::plant(const FaultConfig& config) {
-  profibus::LineFault fault = *config.profibus;
-  fault.sender = find_node(config.station);
-  if (!config.station.empty() && fault.sender == kNoNode) return false;
-  line_.add_fault(fault);
-  return true;
+  return plant_octet_fault(line_, config);
 }
 
 bool ProfibusBus::repair(const FaultConfig& config) {
-  return line_.end_fault(config.profibus->kind, find_node(config.station));
+  return line_.end_fault(config.octets->kind, node_named(line_, config.station));
 }
 
 void ProfibusBus::on_frame(const profibus::Line&, NodeId sender, const profibus::Reception& reception) {

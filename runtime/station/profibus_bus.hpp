@@ -46,7 +46,6 @@ class ProfibusBus final : public Bus, private profibus::LineObserver {
  private:
   class Hand;
 
-  NodeId find_node(const std::string& station) const;  // kNoNode: there is none
   void watch() override {}  // it observes for the journal anyway
   void on_frame(const profibus::Line& line, NodeId sender, const profibus::Reception& reception) override;
   void on_line_event(const profibus::Line& line, const profibus::LineEvent& event) override;
@@ -58,7 +57,7 @@ class ProfibusBus final : public Bus, private profibus::LineObserver {
   std::unique_ptr<LastDpTraffic> last_frames_;
   std::vector<uint64_t> facts_;  // of the last frame, for tracers
   // Each is told once.
-  std::set<std::tuple<profibus::LineEventKind, NodeId, std::optional<profibus::LineFaultKind>>> told_;
+  std::set<std::tuple<profibus::LineEventKind, NodeId, std::optional<OctetFaultKind>>> told_;
 };
 
 }  // namespace ipos::runtime

@@ -8,6 +8,8 @@
 
 #include "runtime/bus/log/serial_log.hpp"
 #include "runtime/plant_file/bytes_text.hpp"
+#include "runtime/plant_file/serial_plan.hpp"
+#include "runtime/station/octet_faults.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -58,6 +60,22 @@ void SerialBus::attach_hand() {
 std::optional<std::string> SerialBus::send(const std::string& text) {
   if (hand_->send(*parse_bytes(text, kBlockCheck))) return std::nullopt;
   return "the telegram before is still being sent";
+}
+
+std::vector<std::string> SerialBus::findings(const PlantFile& file) const {
+  std::vector<std::string> texts;
+  for (SerialCableFinding& finding : serial_cable_findings(file, config())) texts.push_back(std::move(finding.text));
+  return texts;
+}
+
+std::vector<FaultRule> SerialBus::fault_rules() const { return octet_fault_rules(wires()); }
+
+FaultConfig SerialBus::make_fault(const WantedFault& wanted) const { return make_octet_fault(wanted, wires()); }
+
+bool SerialBus::plant(const FaultConfig& config) { return plant_octet_fault(line_, config); }
+
+bool SerialBus::repair(const FaultConfig& config) {
+  return line_.end_fault(config.octets->kind, node_named(line_, config.station));
 }
 
 void SerialBus::on_character(const Rs485Line&, NodeId sender, const Character& character) {

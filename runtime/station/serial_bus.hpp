@@ -30,17 +30,22 @@ class SerialBus final : public Bus, private SerialObserver {
   AnyBus self() override { return this; }
   LineLoad load(Time now) const override;
   std::vector<std::string> node_names() const override { return node_names_of(line_); }
-  // The plant file refuses a line that breaks a rule.
-  std::vector<std::string> findings(const PlantFile&) const override { return {}; }
+  std::vector<std::string> findings(const PlantFile& file) const override;
   Time told_until(Time now) const override {
     return is_observed() && receiver_.receiving() ? receiver_.start() : now;
   }
   void finish() override;
   void attach_hand() override;
   std::optional<std::string> send(const std::string& text) override;
+  std::vector<FaultRule> fault_rules() const override;
+  FaultConfig make_fault(const WantedFault& wanted) const override;
+  bool plant(const FaultConfig& config) override;
+  bool repair(const FaultConfig& config) override;
 
  private:
   class Hand;
+
+  OctetLine wires() const { return octet_line_of(kind()); }
 
   void watch() override { line_.add_observer(*this); }
   void on_character(const Rs485Line& line, NodeId sender, const Character& character) override;

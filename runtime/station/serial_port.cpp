@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "runtime/plant_file/serial_plan.hpp"
@@ -70,7 +71,8 @@ void SerialPort::report(Time now) {
   std::string errors;
   for (size_t n = 0; n < kSerialErrors; ++n) {
     const auto error = static_cast<SerialError>(n);
-    const uint32_t count = parts_->slave.statistics().of(error) + parts_->requester.statistics().of(error);
+    // Both hear the same telegrams; only the requester misses a response, only the slave a cyclic request.
+    const uint32_t count = std::max(parts_->slave.statistics().of(error), parts_->requester.statistics().of(error));
     if (count != 0)
       errors += fmt::format("{}{} {}", errors.empty() ? "" : ", ", serial_error_text(error), count);
   }

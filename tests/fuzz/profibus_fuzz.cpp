@@ -35,8 +35,8 @@ void check_line(Input input) {
     masters[n]->add_slave({static_cast<uint8_t>(10 + n), prm, {0xF0}, 2, 2});
     masters[n]->start();
   }
-  LineFault fault;
-  fault.kind = static_cast<LineFaultKind>(input.u8() % 5);
+  OctetFault fault;
+  fault.kind = static_cast<OctetFaultKind>(input.u8() % 5);
   fault.per_mille = input.u8();
   fault.seed = input.u16();
   line.add_fault(fault);

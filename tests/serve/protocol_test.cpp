@@ -548,16 +548,26 @@ TEST_F(DpAndSerial, WhatALineHasNotIsRefusedInWords) {
   EXPECT_EQ(refused({{"bus", "dp"}, {"kind", "cut"}, {"identifier", 9}}),
             "'cut' strikes all frames of a sender: frames of a PROFIBUS line have no identifier");
   EXPECT_EQ(refused({{"bus", "dp"}, {"kind", "cut"}, {"station", "mill"}}), "there is no 'mill' on dp");
-  EXPECT_EQ(refused({{"bus", "line1"}, {"kind", "cut"}}),
-            "line1 is a serial line: such lines have no faults that can be planted, only CAN and PROFIBUS "
-            "lines have");
+  EXPECT_EQ(refused({{"bus", "line1"}, {"kind", "link"}}),
+            "there is no fault 'link' of a serial line; there are lost, cut, parity, noise, collision, swap, terminator, length, baud");
   EXPECT_EQ(refused({{"bus", "sbus"}, {"kind", "cut"}}), "there is no line 'sbus', only line1, dp");
   const Json answer = good({{"do", "plant"}});
   for (const Json& bus : answer["plant"]["buses"])
     if (bus["name"] == "line1") {
-      EXPECT_EQ(bus["faults"], Json::array());
-      EXPECT_EQ(bus["fault_rules"], Json::object());
+      EXPECT_EQ(bus["faults"], Json({"lost", "cut", "parity", "noise", "collision", "swap", "terminator", "length", "baud"}));
+      EXPECT_EQ(bus["fault_rules"]["swap"]["station"], "must");
+      EXPECT_EQ(bus["fault_rules"]["noise"]["rate"], true);
     }
+}
+
+// A fault of a serial line comes and goes, and the journal names it.
+TEST_F(DpAndSerial, FaultsOfASerialLine) {
+  Json noise{{"do", "fault"}, {"bus", "line1"}, {"kind", "noise"}, {"rate", 0.5}, {"on", true}};
+  good(noise);
+  EXPECT_EQ(topic({{"topic", "plant"}})["buses"]["line1"]["faults"], Json::array({{{"kind", "noise"}, {"station", ""}, {"rate", 0.5}}}));
+  noise["on"] = false;
+  good(noise);
+  EXPECT_EQ(topic({{"topic", "plant"}})["buses"]["line1"]["faults"], Json::array());
 }
 
 // The same words as those of the tools that read a log of the line from its beginning.

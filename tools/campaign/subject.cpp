@@ -39,7 +39,7 @@ runtime::FaultConfig fault_of(const Campaign& campaign, size_t number, const Lev
     if (factor.target == Target::FaultTime) fault.begin_at(value, 0);
     if (factor.target != Target::FaultSeed) continue;
     fault.fault.seed = static_cast<uint64_t>(value);
-    if (fault.profibus) fault.profibus->seed = static_cast<uint64_t>(value);
+    if (fault.octets) fault.octets->seed = static_cast<uint64_t>(value);
   }
   return fault;
 }
@@ -202,10 +202,10 @@ std::string Subject::plant_text(const Levels& levels) const {
       if (value != 0 && value != runtime::kNever) edit.append(fmt::format("{} = \"{}us\"\n", key, static_cast<double>(value) / 1000));
     };
     edit.append("\n[[fault]]\n" + campaign_.faults[n].toml + "\n");
-    time("from", fault.profibus ? fault.profibus->from : fault.fault.from);
-    time("until", fault.profibus ? fault.profibus->until : fault.fault.until);
+    time("from", fault.octets ? fault.octets->from : fault.fault.from);
+    time("until", fault.octets ? fault.octets->until : fault.fault.until);
     if (campaign_.faults[n].has_seeds)
-      edit.append(fmt::format("seed = {}\n", fault.profibus ? fault.profibus->seed : fault.fault.seed));
+      edit.append(fmt::format("seed = {}\n", fault.octets ? fault.octets->seed : fault.fault.seed));
   }
   return edit.text();
 }

@@ -13,6 +13,7 @@ void LineCheck::on_character(const Rs485Line& line, NodeId sender, const Charact
 
 void LineCheck::on_serial_event(const Rs485Line& line, const SerialEvent& event) {
   if (event.kind == SerialEventKind::Collision) collision_ = event;
+  if (event.fault && !told_.emplace(event.node, *event.fault).second) return;
   report_(event.time, describe(line, event));
 }
 

@@ -5,7 +5,9 @@
 
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 
 #include "runtime/bus/movilink/serial_receiver.hpp"
 #include "runtime/bus/rs485/line.hpp"
@@ -33,6 +35,7 @@ class LineCheck final : public SerialObserver {
   std::optional<NodeId> master_;
   std::optional<SerialEvent> collision_;  // the last one, until a single station is heard
   std::optional<Time> broadcast_end_;
+  std::set<std::pair<NodeId, OctetFaultKind>> told_;  // planted faults, each once
   std::optional<Time> broken_off_;  // end of a request that was not completed
 };
 

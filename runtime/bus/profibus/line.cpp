@@ -23,26 +23,26 @@ namespace {
 enum : uint32_t { kFrameEnds, kFaultBegins, kFaultEnds };
 }  // namespace
 
-void Line::add_fault(const LineFault& fault) {
+void Line::add_fault(const OctetFault& fault) {
   const size_t number = faults_.add(fault);
-  if (line_fault_type(fault.kind).scope == LineFaultScope::Frame) return;  // strikes by itself
+  if (octet_fault_type(fault.kind).scope == OctetFaultScope::Frame) return;  // strikes by itself
   queue_.schedule(std::max(fault.from, queue_.now()), source_, *this, kFaultBegins, number);
   if (fault.until != runtime::kNever) queue_.schedule(fault.until, source_, *this, kFaultEnds, number);
 }
 
-bool Line::end_fault(LineFaultKind kind, NodeId sender) {
+bool Line::end_fault(OctetFaultKind kind, NodeId sender) {
   const Time now = queue_.now();
   if (!faults_.end(kind, sender, now)) return false;
-  if (line_fault_type(kind).scope == LineFaultScope::Station) switch_fault(now, {kind, 0, now, sender}, false);
+  if (octet_fault_type(kind).scope == OctetFaultScope::Station) switch_fault(now, {kind, 0, now, sender}, false);
   return true;
 }
 
-void Line::switch_fault(Time now, const LineFault& fault, bool on) {
+void Line::switch_fault(Time now, const OctetFault& fault, bool on) {
   if (!on && faults_.lasts(fault.kind, fault.sender, now)) return;  // another one goes on
   if (on) report({LineEventKind::Fault, now, fault.sender, fault.kind});
   Station& station = nodes_[fault.sender];
-  if (fault.kind == LineFaultKind::Swap) station.swapped = on;
-  if (fault.kind == LineFaultKind::Baud) station.wrong_rate = on;
+  if (fault.kind == OctetFaultKind::Swap) station.swapped = on;
+  if (fault.kind == OctetFaultKind::Baud) station.wrong_rate = on;
   station.node->on_fault(now, fault.kind, on);
 }
 
@@ -53,8 +53,10 @@ bool Line::send(NodeId node, Bits begin, Octets octets) {
   begin = std::max(begin, now());
   const Bits end = begin + kCharacterBits * octets.size();
   Transmission transmission{node, begin, end, kSynBits, {std::move(octets), {}}};
-  if (const auto fault = faults_.strike(at(begin), node, transmission.frame))
-    report({LineEventKind::Struck, queue_.now(), node, fault});
+  if (const auto struck = faults_.strike(at(begin), node)) {
+    damage(struck->kind, transmission.frame, *struck->chance);
+    report({LineEventKind::Struck, queue_.now(), node, struck->kind});
+  }
   for (Transmission& other : under_way_) {
     if (!other.overlaps(transmission) || !other.audible() || !transmission.audible()) continue;
     other.collided = transmission.collided = true;
@@ -175,8 +177,8 @@ std::string describe(const Line& line, const LineEvent& event) {
   std::string text = fmt::format("{}: {} {}", line.name(), line.node_name(event.node),
                                  kTexts[static_cast<size_t>(event.kind)]);
   if (event.kind == LineEventKind::Fault)
-    return fmt::format("{}: {} {}", line.name(), line.node_name(event.node), line_fault_type(*event.fault).text);
-  if (event.fault) text += fmt::format(": the line {}", line_fault_type(*event.fault).text);
+    return fmt::format("{}: {} {}", line.name(), line.node_name(event.node), octet_fault_type(*event.fault).text);
+  if (event.fault) text += fmt::format(": the line {}", octet_fault_type(*event.fault).text);
   return text;
 }
 

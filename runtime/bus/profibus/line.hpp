@@ -29,7 +29,7 @@ class Node {
   virtual void on_reception(Time now, const Reception& reception) = 0;
   virtual void on_sent(Time now) = 0;
   // A fault that lasts begins or ends at this station.
-  virtual void on_fault(Time /*now*/, LineFaultKind /*kind*/, bool /*on*/) {}
+  virtual void on_fault(Time /*now*/, OctetFaultKind /*kind*/, bool /*on*/) {}
 
  protected:
   ~Node() = default;
@@ -44,7 +44,7 @@ struct LineEvent {
   LineEventKind kind;
   Time time;
   NodeId node;
-  std::optional<LineFaultKind> fault = std::nullopt;  // of Struck and Fault
+  std::optional<OctetFaultKind> fault = std::nullopt;  // of Struck and Fault
 };
 
 class LineObserver {
@@ -66,9 +66,9 @@ class Line final : private runtime::EventTarget {
 
   NodeId attach(std::string name, Node& node);
   void add_observer(LineObserver& observer) { observers_.push_back(&observer); }
-  void add_fault(const LineFault& fault);
+  void add_fault(const OctetFault& fault);
   // Frames that begin from now on are not struck any more, and what lasts ends; false: there is no such fault.
-  bool end_fault(LineFaultKind kind, NodeId sender);
+  bool end_fault(OctetFaultKind kind, NodeId sender);
 
   // Sends from bit `begin` on, or from now. False: not connected, still sending, or at another rate.
   bool send(NodeId node, Bits begin, const FdlFrame& frame) { return send(node, begin, encode(frame)); }
@@ -119,7 +119,7 @@ class Line final : private runtime::EventTarget {
   Reception reception_of(const Transmission& transmission) const;
   bool talks_over(NodeId node, const Transmission& transmission) const;
   void end_transmission(Time now, NodeId sender);
-  void switch_fault(Time now, const LineFault& fault, bool on);
+  void switch_fault(Time now, const OctetFault& fault, bool on);
   void report(const LineEvent& event);
   void count(const Transmission& transmission);
 
@@ -129,7 +129,7 @@ class Line final : private runtime::EventTarget {
   uint32_t baud_;
   std::vector<Station> nodes_;
   std::vector<LineObserver*> observers_;
-  LineFaults faults_;
+  OctetFaults faults_;
   std::vector<Transmission> under_way_;  // begun or to begin; seldom more than one
   Bits quiet_since_ = 0;
   bool heard_ = false;  // anything at all

@@ -51,10 +51,10 @@ void SlaveStation::on_reception(Time now, const Reception& reception) {
 }
 
 // With a fault of its bus connection it does not answer (ours); without the link it does, and services fail.
-void SlaveStation::on_fault(Time now, LineFaultKind kind, bool on) {
-  if (kind == LineFaultKind::Link && observer_ != nullptr) observer_->on_link(now, on);
-  if (kind == LineFaultKind::Card) hardware_ = on ? HardwareFault::GreenDark : HardwareFault::None;
-  if (kind == LineFaultKind::CardFlash) hardware_ = on ? HardwareFault::BothFlash : HardwareFault::None;
+void SlaveStation::on_fault(Time now, OctetFaultKind kind, bool on) {
+  if (kind == OctetFaultKind::Link && observer_ != nullptr) observer_->on_link(now, on);
+  if (kind == OctetFaultKind::Card) hardware_ = on ? HardwareFault::GreenDark : HardwareFault::None;
+  if (kind == OctetFaultKind::CardFlash) hardware_ = on ? HardwareFault::BothFlash : HardwareFault::None;
 }
 
 // The deadline moves away with each request: the event that stands finds the new one by itself.

@@ -43,7 +43,7 @@ class SlaveStation final : public Node, private runtime::EventTarget {
 
   void on_reception(Time now, const Reception& reception) override;
   void on_sent(Time) override {}
-  void on_fault(Time now, LineFaultKind kind, bool on) override;
+  void on_fault(Time now, OctetFaultKind kind, bool on) override;
 
  private:
   void on_event(Time now, uint32_t kind, uint64_t argument) override;

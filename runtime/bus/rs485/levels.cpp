@@ -38,7 +38,7 @@ bool level_at(std::span<const Transmission> line, const Ear& ear, Tick tick) {
     if (transmission.sender == ear.deaf_to && ear.deaf_to != kNoNode) return true;
     level = level && transmission.bits[static_cast<size_t>((tick - transmission.begin) / transmission.bit_ticks)];
   }
-  return level;
+  return level != ear.swapped;
 }
 
 std::optional<Tick> next_start(std::span<const Transmission> line, const Ear& ear, Tick from, Tick until) {

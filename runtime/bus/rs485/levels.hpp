@@ -28,13 +28,15 @@ struct Transmission {
 // Bits of characters that follow each other without a gap.
 std::vector<bool> wire_bits(std::span<const uint8_t> bytes);
 
-// A receiver: its rate, and the station whose own transmissions it does not hear (kNoNode: it hears all).
+// A receiver: its rate, the station whose own transmissions it does not hear (kNoNode: it hears all), and whether its A and B
+// are interchanged.
 struct Ear {
   uint32_t bit_ticks = 1;
   NodeId deaf_to = kNoNode;
+  bool swapped = false;
 };
 
-// The level an ear sees in a tick; ticks after all transmissions are 1.
+// The level an ear sees in a tick; ticks after all transmissions are 1, for a swapped ear 0.
 bool level_at(std::span<const Transmission> line, const Ear& ear, Tick tick);
 
 // First tick in `from` .. `until` - 1 where the level falls: the begin of a start bit.

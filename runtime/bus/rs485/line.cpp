@@ -7,10 +7,10 @@
 #include <cassert>
 #include <utility>
 
+#include "runtime/bus/rs485/bit_fault.hpp"
+
 namespace ipos::runtime {
 namespace {
-
-enum Event : uint32_t { kSent, kCharacter };
 
 // Longest time for which a receiver may still look at an ended transmission: a character of the slow rate.
 constexpr Tick kMemory = 2 * kCharacterBits * ticks_per_bit(kSerialBaudRates[0]);
@@ -31,6 +31,7 @@ NodeId Rs485Line::attach(std::string name, uint32_t baud, SerialNode& node) {
   const NodeId id = static_cast<NodeId>(nodes_.size());
   Node& added = nodes_.emplace_back();
   added.ear = {ticks_per_bit(baud), id};
+  added.baud = baud;
   added.name = std::move(name);
   added.node = &node;
   report_absence(id, nullptr);
@@ -58,7 +59,12 @@ bool Rs485Line::send_bits(NodeId node, std::vector<bool> bits) {
   if (!n.connected || n.sent != kNoEvent || bits.empty()) return false;
   forget_old();
   Transmission transmission{node, tick_from(queue_.now()), n.ear.bit_ticks, std::move(bits)};
+  if (n.ear.swapped) transmission.bits.flip();
   if (faults_ != nullptr) faults_->disturb(node, transmission.bits);
+  if (const auto struck = planted_.strike(queue_.now(), node)) {
+    damage(struck->kind, transmission.bits, *struck->chance);
+    report({SerialEventKind::Struck, queue_.now(), node, kNoNode, struck->kind});
+  }
   for (const Transmission& other : transmissions_)
     if (other.sender != node && other.end() > transmission.begin)
       report({SerialEventKind::Collision, queue_.now(), node, other.sender});
@@ -170,6 +176,7 @@ std::vector<Character> Rs485Line::upcoming(NodeId node) const {
 
 void Rs485Line::on_event(Time now, uint32_t kind, uint64_t argument) {
   if (kind == kCharacter) return end_character(static_cast<size_t>(argument));
+  if (kind != kSent) return switch_fault(now, planted_[static_cast<size_t>(argument)], kind == kFaultBegins);
   Node& node = nodes_[static_cast<size_t>(argument)];
   end_transmission(*sending(static_cast<NodeId>(argument)));
   node.sent = kNoEvent;
@@ -185,8 +192,8 @@ void Rs485Line::restart_receiver(NodeId node) {
 }
 
 void Rs485Line::set_baud(NodeId node, uint32_t baud) {
-  nodes_[node].ear.bit_ticks = ticks_per_bit(baud);
-  restart_receiver(node);
+  nodes_[node].baud = baud;
+  take_rate(node);
   report_absence(node, nullptr);
 }
 
@@ -220,20 +227,6 @@ LineLoad Rs485Line::load(Time now) const {
   load.busy_bits /= ticks_per_bit(baud_);
   load.elapsed_bits /= ticks_per_bit(baud_);
   return load;
-}
-
-std::string describe(const Rs485Line& line, const SerialEvent& event) {
-  static constexpr std::string_view kTexts[] = {
-#define SERIAL_EVENT(name, text) text,
-#include "runtime/bus/rs485/line_events.def"
-  };
-  std::string text = fmt::format("{}: {} {}", line.name(), line.node_name(event.node),
-                                 kTexts[static_cast<size_t>(event.kind)]);
-  if (event.kind == SerialEventKind::WrongBaudRate)
-    text += fmt::format(" ({} baud, line {} baud)", line.node_baud(event.node), line.baud());
-  if (event.kind == SerialEventKind::Collision)
-    text += fmt::format(" (other station {})", line.node_name(event.other));
-  return text;
 }
 
 }  // namespace ipos::runtime

@@ -30,6 +30,9 @@ class Rs485Line final : private EventTarget {
   NodeId attach(std::string name, uint32_t baud, SerialNode& node);
   void add_observer(SerialObserver& observer);
   void set_faults(SerialFaults* faults) { faults_ = faults; }
+  void add_fault(const OctetFault& fault);
+  // Telegrams that begin from now on are not struck any more, and what lasts ends; false: there is no such fault.
+  bool end_fault(OctetFaultKind kind, NodeId sender);
 
   bool send(NodeId node, std::span<const uint8_t> bytes) { return send_bits(node, wire_bits(bytes)); }
   bool send_bits(NodeId node, std::vector<bool> bits);  // also characters with errors
@@ -46,7 +49,7 @@ class Rs485Line final : private EventTarget {
   uint32_t baud() const { return baud_; }
   size_t node_count() const { return nodes_.size(); }
   const std::string& node_name(NodeId node) const { return nodes_[node].name; }
-  uint32_t node_baud(NodeId node) const { return kTicksPerSecond / nodes_[node].ear.bit_ticks; }
+  uint32_t node_baud(NodeId node) const { return nodes_[node].baud; }  // as it is set, whatever fault it has
   LineLoad load(
       Time now) const;  // frames: characters an observer heard; the busy time of ended transmissions
 
@@ -61,9 +64,13 @@ class Rs485Line final : private EventTarget {
   struct Node : Receiver {
     std::string name;
     SerialNode* node;
+    uint32_t baud = 0;        // as it is set
+    bool wrong_rate = false;  // by a planted fault
     bool connected = true;
     EventId sent = kNoEvent;  // of the transmission under way
   };
+
+  enum Event : uint32_t { kSent, kCharacter, kFaultBegins, kFaultEnds };
 
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
   Receiver& receiver(size_t number) { return number == kObservers ? observer_ear_ : nodes_[number]; }
@@ -71,6 +78,8 @@ class Rs485Line final : private EventTarget {
   void look_for_start(size_t number, Tick until);
   void look_again();
   void restart_receiver(NodeId node);
+  void switch_fault(Time now, const OctetFault& fault, bool on);
+  void take_rate(NodeId node);
   void end_character(size_t number);
   void end_transmission(Transmission& transmission);
   Transmission* sending(NodeId node);
@@ -90,6 +99,7 @@ class Rs485Line final : private EventTarget {
   Receiver observer_ear_;
   std::vector<SerialObserver*> observers_;
   SerialFaults* faults_ = nullptr;
+  OctetFaults planted_;
   std::vector<Transmission> transmissions_;  // under way, and ended but still part of a character
   uint64_t characters_ = 0;
   Tick counted_until_ = 0;

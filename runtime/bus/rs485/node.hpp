@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "runtime/bus/line/node_id.hpp"
 #include "runtime/bus/rs485/character.hpp"
+#include "runtime/bus/rs485/octet_fault.hpp"
 
 namespace ipos::runtime {
 
@@ -46,6 +48,7 @@ struct SerialEvent {
   Time time;
   NodeId node;
   NodeId other = kNoNode;  // the partner of a collision
+  std::optional<OctetFaultKind> fault = std::nullopt;  // of Struck and Fault
 };
 
 // `sender` is kNoNode when several stations sent during the character.

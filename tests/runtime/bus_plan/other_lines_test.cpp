@@ -47,6 +47,25 @@ std::string serial_caller(const std::vector<int>& addresses, const std::string& 
   return text + last + " }\n}\n";
 }
 
+// Too long, resistors beside those of the units, planted faults of the cable.
+TEST(SerialLinePlan, WhatDisturbs) {
+  const auto codes_of = [](const std::string& keys, const std::string& faults = "") {
+    std::string codes;
+    const PlannedRig of(serial_bus("r", keys) + serial_unit_at("a", 3) + faults);
+    for (const Finding& finding : of.plan.findings) codes += std::string(finding_type(finding.kind).code) + " " + finding.text + "; ";
+    return codes;
+  };
+  const std::string fault = "[[fault]]\nbus = 'r'\nkind = ";
+  EXPECT_EQ(codes_of("length = 200\n"), "");
+  EXPECT_EQ(codes_of("length = 201\n"), "B06 201 m of cable, a RS-485 line may have 200 m; ");
+  EXPECT_EQ(codes_of("terminated = true\n"), "B07 the units have terminating resistors; connect no others; ");
+  EXPECT_EQ(codes_of("", fault + "'noise'\n"), "");
+  EXPECT_EQ(codes_of("", fault + "'swap'\nstation = 'a'\n").substr(0, 35), "B22 a has A and B interchanged: it ");
+  EXPECT_EQ(codes_of("", fault + "'baud'\nstation = 'a'\n").substr(0, 27), "B21 a has another baud rate");
+  EXPECT_EQ(codes_of("", fault + "'terminator'\nrate = 5\n"),
+            "B21 the line disturbs a frame by reflections: a terminating resistor is missing; ");
+}
+
 TEST(SerialLinePlan, StationsAndCable) {
   const PlannedRig of(serial_bus("r", "length = 12.001\n") + serial_bus("s", "length = 5\n", "rs232") +
                       serial_bus("x") +

@@ -154,8 +154,8 @@ TEST(ProfibusBridge, TakesAsManyFramesAsItHasRoomFor) {
 TEST(ProfibusBridge, DisturbedFramesAreNotPassedOn) {
   for (const bool disturbed : {false, true}) {
     DpRig rig;
-    profibus::LineFault fault;
-    fault.kind = profibus::LineFaultKind::Parity;
+    OctetFault fault;
+    fault.kind = OctetFaultKind::Parity;
     fault.sender = rig.slave.node();
     fault.from = rig.queue.now();
     if (disturbed) rig.line.add_fault(fault);

@@ -184,20 +184,19 @@ TEST(Buses, FaultsNeedTheirStation) {
     plant->run_until(plant->now() + kMillisecond);
     EXPECT_TRUE(plant->repair_fault(fault));
   }
-  fault.bus = "dp";
-  fault.profibus.emplace().kind = profibus::LineFaultKind::Lost;
-  fault.station = "v";
-  EXPECT_FALSE(plant->plant_fault(fault));
-  for (const char* station : {"u", ""}) {
-    fault.station = station;
-    EXPECT_FALSE(plant->repair_fault(fault));
-    EXPECT_TRUE(plant->plant_fault(fault));
-    plant->run_until(plant->now() + kMillisecond);
-    EXPECT_TRUE(plant->repair_fault(fault));
+  fault.octets.emplace().kind = OctetFaultKind::Lost;
+  for (const char* bus : {"dp", "rs"}) {
+    fault.bus = bus;
+    fault.station = "v";
+    EXPECT_FALSE(plant->plant_fault(fault));
+    for (const char* station : {"u", ""}) {
+      fault.station = station;
+      EXPECT_FALSE(plant->repair_fault(fault));
+      EXPECT_TRUE(plant->plant_fault(fault));
+      plant->run_until(plant->now() + kMillisecond);
+      EXPECT_TRUE(plant->repair_fault(fault));
+    }
   }
-  fault.bus = "rs";
-  EXPECT_FALSE(plant->plant_fault(fault)) << "RS-485 has no faults to plant";
-  EXPECT_FALSE(plant->repair_fault(fault));
 }
 
 // While the fault lasts nobody hears the frame; behind its end everybody does.

@@ -18,7 +18,7 @@ FaultConfig first_fault(const std::string& text) { return read_plant(kFaultPlant
 TEST(PlantFileFaults, OfAnSbus) {
   const FaultConfig none = first_fault(kFaultOf + "'drop'\n");
   EXPECT_EQ(std::tuple(none.bus, none.station, none.place.line), std::tuple("b", "", 10U));
-  EXPECT_FALSE(none.fault.id || none.profibus || none.fault.behind);
+  EXPECT_FALSE(none.fault.id || none.octets || none.fault.behind);
   EXPECT_EQ(std::tuple(none.fault.kind, none.fault.from, none.fault.until),
             std::tuple(FaultKind::Drop, 0, kNever));
   EXPECT_EQ(std::tuple(none.fault.frame, none.fault.per_mille, none.fault.seed, none.fault.lag),
@@ -116,21 +116,21 @@ TEST(PlantFileFaults, MistakesOfAnSbus) {
 TEST(PlantFileFaults, OfAProfibusLine) {
   const FaultConfig none = first_fault(kFaultOfProfibus + "'lost'\n");
   EXPECT_EQ(std::tuple(none.bus, none.station), std::tuple("p", ""));
-  ASSERT_TRUE(none.profibus);
-  const profibus::LineFault& lost = *none.profibus;
+  ASSERT_TRUE(none.octets);
+  const OctetFault& lost = *none.octets;
   EXPECT_EQ(std::tuple(lost.kind, lost.from, lost.until),
-            std::tuple(profibus::LineFaultKind::Lost, 0, kNever));
+            std::tuple(OctetFaultKind::Lost, 0, kNever));
   EXPECT_EQ(std::tuple(lost.frame, lost.per_mille, lost.seed), std::tuple(0U, 1'000U, 1U));
   const FaultConfig full = first_fault(
       kFaultOfProfibus + "'noise'\nstation = 'u'\nrate = 5\nseed = 7\nfrom = '1ms'\nuntil = '2ms'\n");
   EXPECT_EQ(full.station, "u");
-  EXPECT_EQ(std::tuple(full.profibus->kind, full.profibus->per_mille, full.profibus->seed,
-                       full.profibus->from, full.profibus->until),
-            std::tuple(profibus::LineFaultKind::Noise, 5U, 7U, kMillisecond, 2 * kMillisecond));
-  EXPECT_EQ(first_fault(kFaultOfProfibus + "'cut'\nframe = 3\n").profibus->frame, 3U);
+  EXPECT_EQ(std::tuple(full.octets->kind, full.octets->per_mille, full.octets->seed,
+                       full.octets->from, full.octets->until),
+            std::tuple(OctetFaultKind::Noise, 5U, 7U, kMillisecond, 2 * kMillisecond));
+  EXPECT_EQ(first_fault(kFaultOfProfibus + "'cut'\nframe = 3\n").octets->frame, 3U);
   for (const std::string word : {"lost", "cut", "parity", "noise", "collision", "terminator", "length"})
     EXPECT_EQ(
-        profibus::line_fault_type(first_fault(kFaultOfProfibus + "'" + word + "'\n").profibus->kind).word,
+        octet_fault_type(first_fault(kFaultOfProfibus + "'" + word + "'\n").octets->kind).word,
         word);
 }
 
@@ -155,8 +155,29 @@ TEST(PlantFileFaults, MistakesOfAProfibusLine) {
           {lost + "from = ^'x'\nuntil = '0ms'\n", "'x' is no time"},
           {lost + "until = ^'x'\n", "'x' is no time"},
       });
-  EXPECT_EQ(first_fault(lost + "frame = 1\nfrom = '1ms'\nuntil = '1001us'\n").profibus->until,
+  EXPECT_EQ(first_fault(lost + "frame = 1\nfrom = '1ms'\nuntil = '1001us'\n").octets->until,
             1'001 * kMicrosecond);
+}
+
+TEST(PlantFileFaults, OfASerialLine) {
+  const std::string plant =
+      "[[bus]]\nname = 'r'\nkind = 'rs485'\n[[bus]]\nname = 't'\nkind = 'rs232'\n[[station]]\nname = 'u'\nunit = 'mdxb'\n";
+  const std::string of_r = "[[fault]]\nbus = 'r'\nkind = ", of_t = "[[fault]]\nbus = 't'\nkind = ";
+  for (const std::string word : {"lost", "cut", "parity", "noise", "collision", "terminator", "length", "swap", "baud"}) {
+    const bool lasts = word == "swap" || word == "baud";
+    const FaultConfig read = read_plant(plant + of_r + "'" + word + "'\nstation = 'u'\n" + (lasts ? "" : "rate = 5\n")).faults.at(0);
+    ASSERT_TRUE(read.octets) << word;
+    EXPECT_EQ(octet_fault_type(read.octets->kind).word, word);
+  }
+  expect_mistakes(plant, {
+                             {of_r + "^'link'\n", "'link' is no fault of an RS-485 line; known are lost, cut, parity, noise, collision, swap, "
+                                                  "terminator, length, baud"},
+                             {of_t + "^'swap'\n", "'swap' is no fault of an RS-232 line; known are lost, cut, parity, noise, collision, "
+                                                  "length, baud"},
+                             {"^" + of_r + "'swap'\n", "a fault 'swap' needs station"},
+                             {of_r + "'baud'\nstation = 'u'\nrate = ^1\n", "rate does not belong to a fault 'baud'"},
+                             {of_r + "'noise'\n^id = 5\n", "unknown key 'id' in [[fault]] of an RS-485 line"},
+                         });
 }
 
 // The tables of a text for a plant that is there already: buses, stations and controls have their names.
@@ -167,7 +188,7 @@ TEST(PlantFileFaults, OfATextForAPlant) {
   EXPECT_TRUE(good.errors.empty());
   ASSERT_EQ(good.plant.faults.size(), 2U);
   EXPECT_EQ(good.plant.faults[0].station, "c");
-  EXPECT_TRUE(good.plant.faults[1].profibus);
+  EXPECT_TRUE(good.plant.faults[1].octets);
   EXPECT_TRUE(good.plant.buses.empty() && good.plant.stations.empty() && good.plant.controls.empty());
   for (const auto& [text, message] :
        {std::pair(kFaultOf + "'drop'\nstation = 'v'\n", "there is no station 'v'"),
@@ -190,7 +211,7 @@ TEST(PlantFileFaults, BeginLater) {
             std::tuple(6 * kMillisecond, 7 * kMillisecond, 7U));
   FaultConfig endless = first_fault(kFaultOfProfibus + "'lost'\n");
   endless.begin_at(5 * kMillisecond, 0);
-  EXPECT_EQ(std::tuple(endless.profibus->from, endless.profibus->until, endless.profibus->seed),
+  EXPECT_EQ(std::tuple(endless.octets->from, endless.octets->until, endless.octets->seed),
             std::tuple(5 * kMillisecond, kNever, 1U));
 }
 

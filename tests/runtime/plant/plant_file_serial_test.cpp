@@ -148,9 +148,12 @@ TEST(SerialPlan, LengthsAndCables) {
     const std::string m = std::to_string(row.metres);
     const PlantFile plant = read_plant(line + "length = " + m + "\n" + row.station);
     EXPECT_EQ(serial_length_limit(plant, plant.buses.at(0)), static_cast<uint32_t>(row.metres) * 1'000);
-    expect_mistakes("", {{"^" + line + "length = " + m + ".001\n" + row.station,
-                          "'l' is " + m + ".001 m long; a " + row.of + " may have " + m + " m"},
-                         {"^" + line + "length = 1000\n" + row.station, "'l' is 1000 m long"}});
+    EXPECT_TRUE(serial_cable_findings(plant, plant.buses.at(0)).empty());
+    const PlantFile longer = read_plant(line + "length = " + m + ".001\n" + row.station);
+    const auto found = serial_cable_findings(longer, longer.buses.at(0));
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].rule, SerialCableFinding::Rule::TooLong);
+    EXPECT_EQ(found[0].text, m + ".001 m of cable, a " + row.of + " may have " + m + " m");
   }
   const std::string line = "[[bus]]\nname = 'l'\nkind = 'rs485'\n";
   for (const char* good : {"impedance = 100\n", "impedance = 150\n", "impedance = 0\n", "capacitance = 40\n"})
@@ -160,8 +163,14 @@ TEST(SerialPlan, LengthsAndCables) {
       {{"^" + line + "impedance = 99\n" + x13, "cable of 99 ohm; a RS-485 line needs 100 to 150 ohm"},
        {"^" + line + "impedance = 151\n" + x13, "cable of 151 ohm"},
        {"^" + line + "capacitance = 41\n" + x13, "cable of 41 pF/m; a RS-485 line may have 40 pF/m"},
-       {"^" + line + "terminated = true\n" + x13, "the units have terminating resistors; connect no others"},
-       {"^[[bus]]\nname = 'l'\nkind = 'rs232'\nterminated = true\n" + x13, "terminating resistors"}});
+       {"^" + line + "terminated = true\nimpedance = 151\n" + x13, "cable of 151 ohm"}});
+  for (const std::string kind : {"rs485", "rs232"}) {
+    const PlantFile more = read_plant("[[bus]]\nname = 'l'\nkind = '" + kind + "'\nterminated = true\n" + x13);
+    const auto found = serial_cable_findings(more, more.buses.at(0));
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].rule, SerialCableFinding::Rule::Terminated);
+    EXPECT_EQ(found[0].text, "the units have terminating resistors; connect no others");
+  }
   read_plant("[[bus]]\nname = 'l'\nkind = 'rs232'\nimpedance = 1000\ncapacitance = 1000\n" + x13);
   read_plant("[[bus]]\nname = 'l'\nkind = 'can'\nimpedance = 1000\nterminated = true\nlength = 1000\n" +
              serial_unit("a", "mdxb", ""));

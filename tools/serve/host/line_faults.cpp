@@ -41,9 +41,7 @@ FaultRule rule_named(const runtime::Bus& bus, const std::string& word) {
   const std::vector<FaultRule> rules = bus.fault_rules();
   if (rules.empty())
     throw Mistake(
-        fmt::format("{} is {}: such lines have no faults that can be planted, only CAN and PROFIBUS "
-                    "lines have",
-                    bus.name(), info(bus.kind()).line));
+        fmt::format("{} is {}: such lines have no faults that can be planted", bus.name(), info(bus.kind()).line));
   std::vector<std::string_view> known;
   for (const FaultRule& rule : rules) {
     if (rule.word == word) return rule;
@@ -70,7 +68,7 @@ void check(const FaultRule& rule, const runtime::Bus& bus, const std::string& st
 
 // What the two kinds of faults have in common.
 uint32_t per_mille(const FaultConfig& config) {
-  return config.profibus ? config.profibus->per_mille : config.fault.per_mille;
+  return config.octets ? config.octets->per_mille : config.fault.per_mille;
 }
 
 FaultConfig config_of(const runtime::Bus& bus, const FaultRule& rule, const Arguments& a, runtime::Time now) {
@@ -92,12 +90,12 @@ void LineFaults::built(runtime::Plant& plant) {
 }
 
 std::string_view LineFaults::word(const FaultConfig& config) {
-  return config.profibus ? profibus::line_fault_type(config.profibus->kind).word
+  return config.octets ? octet_fault_type(config.octets->kind).word
                          : runtime::fault_type(config.fault.kind).word;
 }
 
 std::pair<runtime::Time, runtime::Time> LineFaults::times(const FaultConfig& config) {
-  if (config.profibus) return {config.profibus->from, config.profibus->until};
+  if (config.octets) return {config.octets->from, config.octets->until};
   return {config.fault.from, config.fault.until};
 }
 

@@ -162,7 +162,7 @@ class ProfibusMonitor final : public LineMonitor, private profibus::LineObserver
   }
   // What it makes of frames is counted when they end; a frame that is lost is heard by nobody.
   void on_line_event(const profibus::Line& line, const profibus::LineEvent& event) override {
-    if (event.fault == profibus::LineFaultKind::Lost) ++errors;
+    if (event.fault == runtime::OctetFaultKind::Lost) ++errors;
     state = describe(line, event);
   }
   // The page's node only sends.

@@ -65,7 +65,7 @@ std::string line_fault(const Plant& plant, const Arguments& a) {
   if (a.has("rate")) keys += fmt::format(", rate = {}", std::lround(a.number("rate", 0, 1) * 1000));
   // Of the page all are so late.
   const runtime::FaultConfig made = plant.find_bus(a.text("bus"))->make_fault({kind});
-  if (!made.profibus && made.fault.lag != 0) keys += fmt::format(", delay = \"{}ms\"", made.fault.lag / runtime::kMillisecond);
+  if (!made.octets && made.fault.lag != 0) keys += fmt::format(", delay = \"{}ms\"", made.fault.lag / runtime::kMillisecond);
   return fmt::format("{} = {{ {} }}\n", a.flag("on") ? "fault" : "repair", keys);
 }
 

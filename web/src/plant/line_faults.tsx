@@ -84,7 +84,7 @@ export function LineFaults({ buses }: { buses: Line[] }) {
         </label>
         {rule?.station !== "none" && (
           <label class="field">
-            {line.kind === "profibus" ? "Sent by" : "At"}
+            {line.kind === "can" ? "At" : "Sent by"}
             <select value={at} onChange={(event) => setStation(event.currentTarget.value)}>
               <option value="">{rule?.station === "must" ? "choose a station" : "all"}</option>
               {line.stations.map((one) => (

@@ -104,14 +104,14 @@ TEST(DpLine, Collisions) {
 
 TEST(DpLine, PlantedFaults) {
   struct Row {
-    LineFaultKind kind;
+    OctetFaultKind kind;
     std::string errors;
   };
-  for (const Row& row : {Row{LineFaultKind::Lost, "-; -"}, Row{LineFaultKind::Parity, "-; parity error; -"},
-                         Row{LineFaultKind::Collision, "-; parity error; -"}}) {
+  for (const Row& row : {Row{OctetFaultKind::Lost, "-; -"}, Row{OctetFaultKind::Parity, "-; parity error; -"},
+                         Row{OctetFaultKind::Collision, "-; parity error; -"}}) {
     LineRig rig;
     HandNode a(rig, "a"), b(rig, "b");
-    LineFault fault;
+    OctetFault fault;
     fault.kind = row.kind;
     fault.frame = 2;
     rig.line.add_fault(fault);
@@ -121,15 +121,15 @@ TEST(DpLine, PlantedFaults) {
     }
     EXPECT_EQ(b.errors(), row.errors);
     ASSERT_EQ(rig.recorder.texts.size(), 1U);
-    EXPECT_NE(rig.recorder.texts[0].find(line_fault_type(row.kind).text), std::string::npos);
-    EXPECT_EQ(find_line_fault("lost"), LineFaultKind::Lost);
-    EXPECT_FALSE(find_line_fault("nothing").has_value());
+    EXPECT_NE(rig.recorder.texts[0].find(octet_fault_type(row.kind).text), std::string::npos);
+    EXPECT_EQ(runtime::find_octet_fault("lost", runtime::OctetLine::Profibus)->kind, OctetFaultKind::Lost);
+    EXPECT_EQ(runtime::find_octet_fault("nothing", runtime::OctetLine::Profibus), nullptr);
   }
   // A cut or noisy frame is never another one; a lost one may be of one sender only.
-  for (const LineFaultKind kind : {LineFaultKind::Cut, LineFaultKind::Noise}) {
+  for (const OctetFaultKind kind : {OctetFaultKind::Cut, OctetFaultKind::Noise}) {
     LineRig rig(1'500'000);
     HandNode a(rig, "a"), b(rig, "b"), c(rig, "c");
-    LineFault fault;
+    OctetFault fault;
     fault.kind = kind;
     fault.sender = a.id;
     fault.seed = 7;
@@ -148,12 +148,12 @@ TEST(DpLine, PlantedFaults) {
 TEST(DpLine, FaultsEndByHand) {
   LineRig rig;
   HandNode a(rig, "a"), b(rig, "b");
-  LineFault of_a;
-  of_a.kind = LineFaultKind::Lost;
+  OctetFault of_a;
+  of_a.kind = OctetFaultKind::Lost;
   of_a.sender = a.id;
   rig.line.add_fault(of_a);
-  LineFault timed;
-  timed.kind = LineFaultKind::Parity;
+  OctetFault timed;
+  timed.kind = OctetFaultKind::Parity;
   timed.until = kMillisecond;
   rig.line.add_fault(timed);
   const auto send = [&](Bits n) {
@@ -162,10 +162,10 @@ TEST(DpLine, FaultsEndByHand) {
   };
   send(0);
   EXPECT_EQ(b.errors(), "") << "the first one planted counts";
-  EXPECT_FALSE(rig.line.end_fault(LineFaultKind::Lost, runtime::kNoNode));
-  EXPECT_FALSE(rig.line.end_fault(LineFaultKind::Parity, runtime::kNoNode));
-  EXPECT_TRUE(rig.line.end_fault(LineFaultKind::Lost, a.id));
-  EXPECT_FALSE(rig.line.end_fault(LineFaultKind::Lost, a.id));
+  EXPECT_FALSE(rig.line.end_fault(OctetFaultKind::Lost, runtime::kNoNode));
+  EXPECT_FALSE(rig.line.end_fault(OctetFaultKind::Parity, runtime::kNoNode));
+  EXPECT_TRUE(rig.line.end_fault(OctetFaultKind::Lost, a.id));
+  EXPECT_FALSE(rig.line.end_fault(OctetFaultKind::Lost, a.id));
   send(1);
   EXPECT_EQ(b.errors(), "parity error");
   rig.queue.run_until(kMillisecond);
@@ -177,8 +177,8 @@ TEST(DpLine, FaultsByChanceAreTheSameForASeed) {
   const auto struck = [](uint64_t seed, uint32_t per_mille) {
     LineRig rig;
     HandNode a(rig, "a"), b(rig, "b");
-    LineFault fault;
-    fault.kind = LineFaultKind::Parity;
+    OctetFault fault;
+    fault.kind = OctetFaultKind::Parity;
     fault.per_mille = per_mille;
     fault.seed = seed;
     fault.from = kMillisecond;

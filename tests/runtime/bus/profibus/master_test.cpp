@@ -144,8 +144,8 @@ struct Counting final : MasterClient {
 };
 
 TEST(DpMaster, FaultsOnTheLineNeverReachTheUnit) {
-  for (const LineFaultKind kind : {LineFaultKind::Lost, LineFaultKind::Cut, LineFaultKind::Parity,
-                                   LineFaultKind::Noise, LineFaultKind::Collision})
+  for (const OctetFaultKind kind : {OctetFaultKind::Lost, OctetFaultKind::Cut, OctetFaultKind::Parity,
+                                   OctetFaultKind::Noise, OctetFaultKind::Collision})
     for (const uint32_t per_mille : {10U, 200U}) {
       LineRig rig(1'500'000);
       rig.recorder.keep = false;
@@ -155,7 +155,7 @@ TEST(DpMaster, FaultsOnTheLineNeverReachTheUnit) {
       counting.master = &master;
       master.add_slave(plan_of(8, "F1", 4, "88 05 01 0B 31 00 00"));
       master.slave(0).set_outputs({0, 0, 0, 0x5A});
-      LineFault fault;
+      OctetFault fault;
       fault.kind = kind;
       fault.per_mille = per_mille;
       fault.seed = 3;
@@ -183,8 +183,8 @@ TEST(DpMaster, ALostAnswerIsNotExecutedTwice) {
   const int taken = slave.unit.taken;
   const uint64_t repetitions = master.repetitions();
   rig.recorder.heard.clear();
-  LineFault fault;
-  fault.kind = LineFaultKind::Lost;
+  OctetFault fault;
+  fault.kind = OctetFaultKind::Lost;
   fault.sender = slave.station.node();
   fault.from = rig.queue.now();
   fault.frame = 1;
@@ -248,8 +248,8 @@ TEST(DpMaster, LostTokensAreFoundAgain) {
   Master& b = rig.add_master(second);
   a.add_slave(plan_of(10, "F0", 2));
   b.add_slave(plan_of(11, "F0", 2));
-  LineFault fault;
-  fault.kind = LineFaultKind::Noise;
+  OctetFault fault;
+  fault.kind = OctetFaultKind::Noise;
   fault.per_mille = 20;
   rig.line.add_fault(fault);
   a.start();
@@ -402,8 +402,8 @@ TEST(MasterView, NonExistentKeepsTheRest) {
 TEST(MasterView, InvalidAnswerIsTheMastersBit) {
   PROVES("DP-DIAG-07");
   OneSlave one;
-  LineFault fault;
-  fault.kind = LineFaultKind::Parity;
+  OctetFault fault;
+  fault.kind = OctetFaultKind::Parity;
   fault.sender = one.slave.station.node();
   fault.from = one.rig.queue.now();
   fault.frame = 1;

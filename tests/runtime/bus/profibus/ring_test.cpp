@@ -309,8 +309,8 @@ TEST(DpLine, FramesThatFollowEachOtherDoNotCollide) {
   for (const NodeId swallowed : {NodeId{0}, NodeId{1}}) {
     LineRig lost;
     Talker g(lost, "g"), h(lost, "h"), i(lost, "i");
-    LineFault fault;
-    fault.kind = LineFaultKind::Lost;
+    OctetFault fault;
+    fault.kind = OctetFaultKind::Lost;
     fault.sender = swallowed;
     lost.line.add_fault(fault);
     lost.line.send(g.id, 100, frame);

@@ -65,8 +65,8 @@ TEST(SerialPlan, LengthOfALine) {
   PROVES("RS485-24");
   const std::string units =
       station("a", "md60a", "rs485 = \"l\"\n") + station("b", "md60a", "rs485 = \"l\"\n", "P810 = 1\n");
-  accepts(bus("l", "length = 200\n") + units);
-  refuses(bus("l", "length = 201\n") + units, "201 m long; a RS-485 line may have 200 m");
+  EXPECT_FALSE(PlantRun(bus("l", "length = 200\n") + units).told("m of cable"));
+  EXPECT_TRUE(PlantRun(bus("l", "length = 201\n") + units).told("l: 201 m of cable, a RS-485 line may have 200 m"));
   refuses(bus("l", "length = 0\n") + units, "in metres");
 }
 
@@ -75,9 +75,9 @@ TEST(SerialPlan, Rs232ConnectsTwo) {
   const std::string line = "[[bus]]\nname = \"pc\"\nkind = \"rs232\"\n";
   const std::string slave = station("a", "md60a", "rs485_xt = \"pc\"\nuss21a = true\n");
   const std::string other = station("b", "md60a", "rs485_xt = \"pc\"\nuss21a = true\n", "P810 = 1\n");
-  accepts(line + "length = 5\n" + slave);
+  EXPECT_FALSE(PlantRun(line + "length = 5\n" + slave).told("m of cable"));
   refuses(line + slave + other, "one master and one slave");
-  refuses(line + "length = 6\n" + slave, "6 m long; a RS-232 line may have 5 m");
+  EXPECT_TRUE(PlantRun(line + "length = 6\n" + slave).told("pc: 6 m of cable, a RS-232 line may have 5 m"));
   refuses(line + "baud = 57600\n" + slave, "RS-232 has 9600 baud");
 }
 
@@ -107,15 +107,24 @@ TEST(SerialPlan, Uss21aAndKeypad) {
 
 TEST(SerialPlan, MovidriveB) {
   PROVES("MDB-RS485-05", "MDB-RS485-06");
+  // What `ipos bus plan` refuses (other_lines_test.cpp has its codes), and a run tells.
+  const auto wrong = [](const std::string& text) {
+    const PlantFile file = read_plant_file(text).plant;
+    const auto found = serial_cable_findings(file, file.buses.at(0));
+    return found.size() == 1 ? found[0].text : std::to_string(found.size());
+  };
   accepts(bus("line1", "length = 200\n") + many(31, "mdxb", "rs485"));
+  EXPECT_EQ(wrong(bus("line1", "length = 200\n") + many(31, "mdxb", "rs485")), "0");
   refuses(bus("line1") + many(33, "mdxb", "rs485"), "one master and 31 slaves");
-  refuses(bus("line1", "length = 201\n") + many(2, "mdxb", "rs485"), "may have 200 m");
+  EXPECT_EQ(wrong(bus("line1", "length = 201\n") + many(2, "mdxb", "rs485")), "201 m of cable, a RS-485 line may have 200 m");
   const std::string unit = station("a", "mdxb", "rs485_xt = \"x\"\n");
-  accepts(bus("x", "length = 3\n") + unit);
-  refuses(bus("x", "length = 3.5\n") + unit, "3.500 m long; a line at XT of MOVIDRIVE B may have 3 m");
-  accepts(bus("x", "length = 5\nshielded = true\n") + unit);
-  refuses(bus("x", "length = 5.1\nshielded = true\n") + unit, "may have 5 m");
-  refuses(bus("line1", "terminated = true\n") + many(2, "mdxb", "rs485"), "connect no others");
+  EXPECT_EQ(wrong(bus("x", "length = 3\n") + unit), "0");
+  EXPECT_EQ(wrong(bus("x", "length = 3.5\n") + unit), "3.500 m of cable, a line at XT of MOVIDRIVE B may have 3 m");
+  EXPECT_EQ(wrong(bus("x", "length = 5\nshielded = true\n") + unit), "0");
+  EXPECT_EQ(wrong(bus("x", "length = 5.1\nshielded = true\n") + unit),
+            "5.100 m of cable, a shielded line at XT of MOVIDRIVE B may have 5 m");
+  EXPECT_EQ(wrong(bus("line1", "terminated = true\n") + many(2, "mdxb", "rs485")),
+            "the units have terminating resistors; connect no others");
   refuses(bus("line1") + many(3, "mdxb", "rs485_xt"), "one master and one slave");
   refuses(bus("x") + station("a", "mdxb", "rs485_xt = \"x\"\nkeypad = true\n"), "excludes rs485_xt");
   // The cable: 100 to 150 ohm, at most 40 pF/m; 1053 1610 p. 14-15 prints the same for the older units.
