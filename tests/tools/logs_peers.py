@@ -84,6 +84,21 @@ def written_by_us(folder):
     same("pcapng written by tshark", expected, times(ours(rewritten)))
 
 
+def error_frames(folder):
+    """A trace of a disturbed line: its frames are those of the undisturbed forms for python-can, and its error frames are counted."""
+    plant = folder / "disturbed.toml"
+    plant.write_text((SOURCE / "examples/movilink/movilink.toml").read_text().replace('program = "', f'program = "{SOURCE}/examples/movilink/')
+                     + '\n[[fault]]\nbus = "sbus"\nkind = "corrupt"\nrate = 300\n')
+    logs = {form: str(folder / f"disturbed.{form}") for form in ("log", "trc")}
+    for log in logs.values():
+        run(IPOS, "run", str(plant), "--for", "400ms", "--log", log)
+    same("disturbed trc in python-can", times(ours(logs["log"])), of_can(can.LogReader(logs["trc"])))
+    count = sum(" ER " in row for row in Path(logs["trc"]).read_text().splitlines())
+    told = sum(m.is_error_frame for m in can.LogReader(logs["log"]))
+    assert count == told > 5, f"{count} error frames of {told}"
+    print(f"disturbed trc: {count} error frames, as many as in the candump log")
+
+
 def written_by_python_can(folder):
     draw = random.Random(7)
     messages = []
@@ -245,6 +260,7 @@ def dissected(folder):
 
 with tempfile.TemporaryDirectory() as name:
     written_by_us(Path(name))
+    error_frames(Path(name))
     written_by_python_can(Path(name))
     absolute_times(Path(name))
     captured(Path(name))

@@ -36,6 +36,7 @@ class Logged {
     log->finish();
     return taken(out_.str());
   }
+  std::string written() const { return out_.str(); }
 
   std::optional<runtime::Plant> plant;
   std::optional<PlantLog> log;
@@ -58,7 +59,7 @@ TEST(PlantLog, AFrameHasTheTimeOfItsEnd) {
 // The first attempt is disturbed, the second one gets through: readers of error frames count one.
 TEST(PlantLog, AnErrorFrameIsInIt) {
   const std::string fault = "[[fault]]\nbus = \"sbus\"\nkind = \"corrupt\"\nframe = 1\n";
-  for (const char* name : {"a.log", "a.asc", "a.pcapng"}) {
+  for (const char* name : {"a.log", "a.asc", "a.trc", "a.pcapng"}) {
     Logged run(kCan + (kStation + std::string("sbus = \"sbus\"\n")) + fault, name);
     run.send("sbus", "4D3#3100207E00000000", 10 * kMillisecond);
     const Taken got = run.taken_to(20 * kMillisecond);
@@ -66,6 +67,21 @@ TEST(PlantLog, AnErrorFrameIsInIt) {
     EXPECT_EQ(got.can.size(), 1U) << name;
     EXPECT_EQ(got.left_out.of(LeftOut::ErrorFrame), 1U) << name;
   }
+}
+
+// As version 2.1 of the form prints it: no identifier, five bytes. At 10 ms nobody is there who could acknowledge the second frame:
+// its sender meets a recessive acknowledge slot (19h of the SJA1000) again and again.
+TEST(PlantLog, ErrorFramesOfATraceOfPeak) {
+  const auto rows = [](const std::string& station, const std::string& fault, Time end) {
+    Logged run(kCan + (kStation + station) + fault, "a.trc");
+    run.send("sbus", "4D3#3100207E00000000", 10 * kMillisecond);
+    run.taken_to(end);
+    return run.written();
+  };
+  const std::string disturbed =
+      rows("sbus = \"sbus\"\n", "[[fault]]\nbus = \"sbus\"\nkind = \"corrupt\"\nframe = 1\n", 20 * kMillisecond);
+  EXPECT_NE(disturbed.find(" ER  1        - Rx -  5    08 00 00 00 00\n      2 "), std::string::npos) << disturbed;
+  EXPECT_NE(rows("", "", 11 * kMillisecond).find(" ER  1        - Rx -  5    08 00 19 00 00\n"), std::string::npos);
 }
 
 // 1Dh would be an answer; this request to address 1 stops in the middle of its words: what has come is told as void.
