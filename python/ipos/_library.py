@@ -144,6 +144,7 @@ _FUNCTIONS = {
     "run_until": [c_void_p, c_int64, CONDITION, c_void_p],
     "station_at": [c_void_p, c_uint32, POINTER(StationInfo)],
     "station": [c_void_p, c_char_p, POINTER(c_uint32)],
+    "ideal_motor": [c_void_p, c_uint32, POINTER(c_bool)],
     "power": [c_void_p, c_uint32, c_bool],
     "program": [c_void_p, c_uint32, c_int32],
     "drive_fault": [c_void_p, c_uint32, c_uint8],

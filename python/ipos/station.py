@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import operator
-from ctypes import byref, c_char_p, c_int64, c_uint32
+from ctypes import byref, c_bool, c_char_p, c_int64, c_uint32
 from typing import TYPE_CHECKING, Iterator, Mapping
 
 from . import _library as lib
@@ -329,6 +329,14 @@ class Station(lib.Named, SignalOwner):
     def why(self) -> str:
         """Why the drive does not run, or not as its setpoint says; "enabled" when it does."""
         return self._plant._text("why", self._number)
+
+    @property
+    def ideal_motor(self) -> bool:
+        """The motor is the ideal one of 1.5 kW, as the plant file has no [station.motor]: currents and heat are those of that motor, and
+        without control = "real" its speed does not sag under load. False of a gateway, which has no motor."""
+        ideal = c_bool()
+        self._plant._call("ideal_motor", self._number, byref(ideal))
+        return ideal.value
 
     @property
     def running(self) -> bool:

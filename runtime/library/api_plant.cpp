@@ -220,6 +220,17 @@ ipos_plant_status ipos_plant_station(ipos_plant* plant, const char* name, uint32
   });
 }
 
+ipos_plant_status ipos_plant_ideal_motor(ipos_plant* plant, uint32_t station, bool* ideal) {
+  return enter(plant, Allowed::Anywhere, [=](Session& session) {
+    if (ideal == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
+    const auto& stations = session.plant().stations();
+    if (station >= station_count(session.plant()))
+      return plant->fail(IPOS_PLANT_NO_STATION, fmt::format("there is no station number {}", station));
+    *ideal = station < stations.size() && !stations[station]->config().options.own_motor;
+    return ipos_plant_status{IPOS_PLANT_OK};
+  });
+}
+
 ipos_plant_status ipos_plant_power(ipos_plant* plant, uint32_t station, bool on) {
   return order(plant, station, on ? Act::PowerOn : Act::PowerOff, 0);
 }

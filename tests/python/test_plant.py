@@ -49,6 +49,17 @@ def test_the_sample_of_the_contract(monkeypatch):
         assert bus.frames() == []
 
 
+def test_the_motor_says_whether_it_is_ideal():
+    """As the card of the page and `ipos run --why` do: a nameplate is a motor of its own."""
+    begin = '[[station]]\nname = "a"\nunit = "mdxb"\n'
+    plate = '[station.motor]\npower = "1.5 kW"\nvoltage = "400 V"\nfrequency = "50 Hz"\ncurrent = "3.6 A"\nspeed = "1400 rpm"\ncos_phi = 0.79\n'
+    for more, ideal in (("", True), (plate, False), ('control = "real"\n', True), ('[station.load]\ntorque = "2 Nm"\n', True)):
+        with ipos.Plant(text=begin + more) as plant:
+            assert plant["a"].ideal_motor is ideal, more
+            with pytest.raises(AttributeError):
+                plant["a"].ideal_motor = True
+
+
 def test_until_says_whether_the_condition_came(line):
     assert line.run(until=lambda: line.time >= 0.005, limit=1) is True
     assert line.time_us == 5000

@@ -170,6 +170,10 @@ typedef struct ipos_plant_station_info {
 ipos_plant_status ipos_plant_station_at(ipos_plant* plant, uint32_t station, ipos_plant_station_info* info);
 ipos_plant_status ipos_plant_station(ipos_plant* plant, const char* name, uint32_t* station);
 
+/* Whether the motor is the ideal one of 1.5 kW: the plant file has no [station.motor] for it. Without control = "real" it keeps
+ * every speed, too. False of a gateway, which has none. IPOS_PLANT_NO_STATION. In callbacks. */
+ipos_plant_status ipos_plant_ideal_motor(ipos_plant* plant, uint32_t station, bool* ideal);
+
 /* Mains and 24 V off and on. */
 ipos_plant_status ipos_plant_power(ipos_plant* plant, uint32_t station, bool on);
 

@@ -15,7 +15,7 @@ inline constexpr std::string_view kFunctions[] = {
     "ipos_plant_version", "ipos_plant_mistake_at", "ipos_plant_adopt", "ipos_plant_status_text",
     "ipos_plant_open", "ipos_plant_close", "ipos_plant_message", "ipos_plant_mistakes",
     "ipos_plant_duration", "ipos_plant_time", "ipos_plant_run", "ipos_plant_run_to_frame",
-    "ipos_plant_run_until", "ipos_plant_station_at", "ipos_plant_station", "ipos_plant_power",
+    "ipos_plant_run_until", "ipos_plant_station_at", "ipos_plant_station", "ipos_plant_ideal_motor", "ipos_plant_power",
     "ipos_plant_program", "ipos_plant_drive_fault", "ipos_plant_reset_fault", "ipos_plant_why",
     "ipos_plant_find", "ipos_plant_signal_info_of", "ipos_plant_name_at", "ipos_plant_read",
     "ipos_plant_read_many", "ipos_plant_read_text", "ipos_plant_write", "ipos_plant_write_text",
@@ -65,6 +65,7 @@ Result called(Result result) {
 #define ipos_plant_run_until(...) IPOS_CALLED(ipos_plant_run_until, __VA_ARGS__)
 #define ipos_plant_station_at(...) IPOS_CALLED(ipos_plant_station_at, __VA_ARGS__)
 #define ipos_plant_station(...) IPOS_CALLED(ipos_plant_station, __VA_ARGS__)
+#define ipos_plant_ideal_motor(...) IPOS_CALLED(ipos_plant_ideal_motor, __VA_ARGS__)
 #define ipos_plant_power(...) IPOS_CALLED(ipos_plant_power, __VA_ARGS__)
 #define ipos_plant_program(...) IPOS_CALLED(ipos_plant_program, __VA_ARGS__)
 #define ipos_plant_drive_fault(...) IPOS_CALLED(ipos_plant_drive_fault, __VA_ARGS__)

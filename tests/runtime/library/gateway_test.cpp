@@ -49,6 +49,9 @@ TEST(LibraryGateway, HasPowerAndSignals) {
   ASSERT_EQ(ipos_plant_station_at(plant, gateway, &info), IPOS_PLANT_OK);
   EXPECT_STREQ(info.unit, "gateway");
   EXPECT_EQ(ipos_plant_station_at(plant, 2, &info), IPOS_PLANT_NO_STATION);
+  bool ideal = true;
+  EXPECT_EQ(ipos_plant_ideal_motor(plant, gateway, &ideal), IPOS_PLANT_OK);
+  EXPECT_FALSE(ideal) << "it has no motor";
 
   uint32_t word = 0, powered = 0, exchange = 0;
   ASSERT_EQ(ipos_plant_find(plant, gateway, IPOS_PLANT_ANY, "drive2.PO2", &word), IPOS_PLANT_OK);

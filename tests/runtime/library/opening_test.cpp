@@ -185,6 +185,11 @@ TEST(LibraryStations, HaveNumbersAndTakeOrders) {
   EXPECT_EQ(plant.message(), "there is no station number 2");
   for (const auto& order : {ipos_plant_reset_fault}) EXPECT_EQ(order(plant.plant, 2), IPOS_PLANT_NO_STATION);
   EXPECT_EQ(ipos_plant_power(plant.plant, 2, true), IPOS_PLANT_NO_STATION);
+  bool ideal = false;
+  EXPECT_EQ(ipos_plant_ideal_motor(plant.plant, 1, &ideal), IPOS_PLANT_OK);
+  EXPECT_TRUE(ideal);
+  EXPECT_EQ(ipos_plant_ideal_motor(plant.plant, 2, &ideal), IPOS_PLANT_NO_STATION);
+  EXPECT_EQ(ipos_plant_ideal_motor(plant.plant, 0, nullptr), IPOS_PLANT_INVALID_ARGUMENT);
   EXPECT_EQ(ipos_plant_drive_fault(plant.plant, 0, 0), IPOS_PLANT_INVALID_ARGUMENT);
   for (const int32_t wrong : {-1, 3})
     EXPECT_EQ(ipos_plant_program(plant.plant, 0, wrong), IPOS_PLANT_INVALID_ARGUMENT);
