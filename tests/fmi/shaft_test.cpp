@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "tests/fmi/functions.hpp"
 
@@ -36,7 +37,7 @@ class Shaft {
 
 constexpr double kRated = 10.2314;  // Nm: 1.5 kW at 1400 rpm
 // The rotor reaches 1500 rpm in 50 ms with rated torque; the load is four times that.
-constexpr double kRotor = kRated * 0.05 / (1500 * 2 * M_PI / 60);
+constexpr double kRotor = kRated * 0.05 / (1500 * 2 * std::numbers::pi / 60);
 
 // Torque in, speed out: a second mass on a spring. Its swing about the drive that has stopped is that of a mass on a spring alone.
 TEST(FmiShaft, ASpringOutsideKeepsItsEnergy) {
@@ -58,7 +59,7 @@ TEST(FmiShaft, ASpringOutsideKeepsItsEnergy) {
     }
   };
   run(1'500);  // the ramp is over: the shaft turns at 1000 rpm, and the mass swings about that
-  const double turning = 1000 * 2 * M_PI / 60;
+  const double turning = 1000 * 2 * std::numbers::pi / 60;
   EXPECT_NEAR(drive.get("u.shaft_speed"), turning, 1e-3);
   // Of the mass as it swings about the drive. With u the relative speed and s the stretch a step is u' = u + w^2 dt s, s' = s - dt u',
   // which keeps u^2 + w^2 s^2 + w^2 dt u s to the last digit: the closed form of the energy is a constant less k dt u s / 2, and that
@@ -96,8 +97,8 @@ TEST(FmiShaft, AMassOutsideIsTakenToTheSpeed) {
     speed += torque / inertia * 1e-3;
     most = std::max(most, speed);
   }
-  EXPECT_NEAR(speed, 1000 * 2 * M_PI / 60, 0.05);
-  EXPECT_LT(most, 1040 * 2 * M_PI / 60);
+  EXPECT_NEAR(speed, 1000 * 2 * std::numbers::pi / 60, 0.05);
+  EXPECT_LT(most, 1040 * 2 * std::numbers::pi / 60);
   EXPECT_NEAR(drive.get("u.torque"), 4, 0.05) << "what the mass asks for";
 }
 

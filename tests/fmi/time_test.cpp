@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <thread>
 
 #include "tests/fmi/functions.hpp"
@@ -35,7 +36,7 @@ TEST_F(FmiTime, WhatIsSetActsInTheMillisecondThatBegins) {
   std::vector<double> speeds;
   for (int n = 0; n < 500; ++n) {
     ASSERT_EQ(fmi2DoStep(c, 0.5 + n * 1e-3, 1e-3, 1), kOk) << told_.text;
-    speeds.push_back(real(c, "u.shaft_speed") * 60 / (2 * M_PI));
+    speeds.push_back(real(c, "u.shaft_speed") * 60 / (2 * std::numbers::pi));
   }
   const auto first = static_cast<size_t>(std::find_if(speeds.begin(), speeds.end(), [](double v) { return v > 0; }) - speeds.begin());
   const runtime::PlantFile file = runtime::read_plant_file(kTurning + "[[stimulus]]\nstation = \"u\"\nat = \"501ms\"\ninput = \"DI01\"\nset = 1\n").plant;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "tests/runtime/library/opened_plant.hpp"
 
@@ -85,7 +86,7 @@ TEST(LibraryShaft, ADrivenShaftHasItsSpeedFromOutside) {
   plant.run(1'000);
   EXPECT_EQ(plant.value(speed), 999'500);
   EXPECT_GT(torque(plant), 5) << "it turns towards 1000 rpm, harder and harder";
-  EXPECT_NEAR(static_cast<double>(plant.value(plant.find("shaft_angle"))) * 1e-6, 999.5 / 60 * 2 * M_PI, 0.1);
+  EXPECT_NEAR(static_cast<double>(plant.value(plant.find("shaft_angle"))) * 1e-6, 999.5 / 60 * 2 * std::numbers::pi, 0.1);
   ASSERT_EQ(ipos_plant_write(plant.plant, speed, 1'100'000), IPOS_PLANT_OK);
   plant.run(1'100);
   EXPECT_LT(torque(plant), -50);
