@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "runtime/bus_plan/names.hpp"
+#include "runtime/plant_file/line_names.hpp"
 
 namespace ipos::runtime {
 
@@ -52,7 +53,7 @@ std::vector<LineRoster> line_rosters(const Plant& plant) {
             {config.name, station.get(), port, canopen, number, nullptr, config.place.line});
       }
     for (const auto& control : plant.controls()) {
-      const std::vector<std::string> lines = control->lines();
+      const std::vector<std::string> lines = line_names(control->config());
       if (std::find(lines.begin(), lines.end(), bus->name()) != lines.end())
         roster.members.push_back(
             {control->name(), nullptr, nullptr, nullptr, 1, control.get(), control->config().place.line});

@@ -181,6 +181,16 @@ void EventQueue::run_until(Time end) {
   reached_ = UINT32_MAX;
 }
 
+// The last events one by one: none of them may advance() beyond the moment.
+void EventQueue::run_before(Moment moment) {
+  if (moment.at - 1 > now_) run_until(moment.at - 1);
+  for (const Order* event = next(); event != nullptr && event->at <= moment.at; event = next()) {
+    if (event->at == moment.at && event->source >= moment.source) break;
+    step();
+  }
+  reach(moment.at, moment.source);
+}
+
 // Before the next event, if it were scheduled now.
 bool EventQueue::comes_first(Time at, uint32_t source) const {
   const Order* event = next();

@@ -60,6 +60,17 @@ class EventQueue {
   // Runs every event up to and including `end`; now() is `end` afterwards.
   void run_until(Time end);
 
+  // The place of an event in the order of all; two of one source and time are not told apart.
+  struct Moment {
+    Time at;
+    uint32_t source;
+  };
+  // Runs every event before this moment, which is now then.
+  void run_before(Moment moment);
+  Moment moment() const { return {now_, reached_}; }
+  // Of the next event, which there must be.
+  Moment next_moment() const { return {next()->at, next()->source}; }
+
   // What is executed late finds the time that it belongs to, and what has happened by then. Nothing may be
   // scheduled in it before the time it comes back to.
   class Past {

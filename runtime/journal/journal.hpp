@@ -32,19 +32,28 @@ class Journal {
 
   // A text that the station has already said is not repeated: a cyclic cause gives one entry.
   void note(Time time, Weight weight, std::string_view station, std::string text) {
-    for (const JournalEntry& entry : entries_)
-      if (entry.station == station && entry.text == text) return;
-    if (latecomers_) latecomers_();
-    entries_.push_back({time, weight, std::string(station), std::move(text)});
+    if (has(station, text)) return;
+    tell(time, weight, station, std::move(text));
   }
   // What happens once each time it is told, as a hand that switches.
   void tell(Time time, Weight weight, std::string_view station, std::string text) {
     if (latecomers_) latecomers_();
     entries_.push_back({time, weight, std::string(station), std::move(text)});
   }
+  // From the journal of a part of the plant. What no station says is said by the plant, once.
+  void take(JournalEntry entry) {
+    if (entry.station.empty() && has(entry.station, entry.text)) return;
+    entries_.push_back(std::move(entry));
+  }
   const std::vector<JournalEntry>& entries() const { return entries_; }
 
  private:
+  bool has(std::string_view station, std::string_view text) const {
+    for (const JournalEntry& entry : entries_)
+      if (entry.station == station && entry.text == text) return true;
+    return false;
+  }
+
   std::function<void()> latecomers_;
   std::vector<JournalEntry> entries_;
 };

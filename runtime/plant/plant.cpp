@@ -51,10 +51,11 @@ void open_memory(const StationConfig& config, Station& station, std::vector<Plan
 Plant::Plant(PlantFile file, std::vector<std::optional<vm::Image>> programs, std::optional<vm::Rates> rates,
              std::vector<PlantError>& errors, const Execution& execution)
     : file_(std::move(file)) {
+  islands_ = std::make_unique<Islands>(file_, queue_, journal_, execution.threads);
   journal_.ask_first([this] { look(); });
   // Sources order the events of one moment: first the lines, then machines, the surroundings, then stations and
   // controls, each in the order of the file.
-  for (const BusConfig& bus : file_.buses) add_bus(bus);
+  for (const BusConfig& bus : file_.buses) add_bus(bus, islands_->of_bus(bus.name));
   if (execution.pace == Pace::InTurn)
     for (const auto& bus : buses_)
       if (auto* can = as<CanBus>(bus.get())) can->line().repeat_in_turn();
@@ -62,9 +63,11 @@ Plant::Plant(PlantFile file, std::vector<std::optional<vm::Image>> programs, std
   surroundings_ = std::make_unique<Surroundings>(queue_, next_source_++, journal_);
   for (size_t n = 0; n < file_.stations.size(); ++n)
     add_station(n, std::move(programs[n]), rates, errors, execution);
-  for (const ControlConfig& config : file_.controls)
-    if (auto control = make_control({*this, queue_, next_source_, journal_}, config, errors))
+  for (size_t n = 0; n < file_.controls.size(); ++n) {
+    const auto [queue, journal, island] = islands_->of_control(n);
+    if (auto control = make_control({*this, queue, next_source_, journal}, file_.controls[n], errors))
       controls_.push_back(std::move(control));
+  }
   machines_->connect(*this, errors);
   surroundings_->connect(file_, *this, errors);
   resolve_expectations(errors);
@@ -81,13 +84,15 @@ Plant::Plant(PlantFile file, std::vector<std::optional<vm::Image>> programs, std
 void Plant::add_station(size_t number, std::optional<vm::Image> program, std::optional<vm::Rates> rates,
                         std::vector<PlantError>& errors, const Execution& execution) {
   const StationConfig& config = file_.stations[number];
-  const StationLines lines = lines_of(config);
+  const StationLines lines = lines_of(number);
   if (program) {
     const std::vector<PlantError> refused = verify_program(config, *program, execution);
     errors.insert(errors.end(), refused.begin(), refused.end());
   }
-  stations_.push_back(std::make_unique<Station>(queue_, next_source_++, config, std::move(program), lines,
-                                                journal_, rates, execution));
+  const auto [queue, journal, island] = islands_->of_station(number);
+  stations_.push_back(std::make_unique<Station>(queue, next_source_++, config, std::move(program), lines, journal, rates,
+                                                execution));
+  islands_->ask_first(number, [station = stations_.back().get()] { station->look(); });
   open_memory(config, *stations_.back(), errors);
   for (const ParameterSetting& setting : config.parameters)
     if (const auto refused = stations_.back()->set_parameter(setting))
@@ -151,15 +156,22 @@ bool Plant::plant_fault(const FaultConfig& config) { return find_bus(config.bus)
 
 bool Plant::repair_fault(const FaultConfig& config) { return find_bus(config.bus)->repair(config); }
 
-Bus& Plant::add_bus(const BusConfig& config) {
-  buses_.push_back(make_bus({queue_, next_source_++, config, [this](Time now, std::string text) {
-                               journal_.note(now, Weight::Warning, "", std::move(text));
+Bus& Plant::add_bus(const BusConfig& config, Islands::Place place) {
+  buses_.push_back(make_bus({place.queue, next_source_++, config, [&journal = place.journal](Time now, std::string text) {
+                               journal.note(now, Weight::Warning, "", std::move(text));
                              }}));
+  island_of_bus_.push_back(place.island);
   return *buses_.back();
 }
 
+size_t Plant::island_of(const Bus& bus) const {
+  const auto found = std::find_if(buses_.begin(), buses_.end(), [&](const auto& one) { return one.get() == &bus; });
+  return island_of_bus_[static_cast<size_t>(found - buses_.begin())];
+}
+
 // A keypad hangs on a line of its own, which comes right before its station.
-StationLines Plant::lines_of(const StationConfig& station) {
+StationLines Plant::lines_of(size_t number) {
+  const StationConfig& station = file_.stations[number];
   const auto line = [](auto* bus) { return bus == nullptr ? nullptr : &bus->line(); };
   const auto can = [&](const std::string& name) { return line(as<CanBus>(find_bus(name))); };
   const auto serial = [&](const std::string& name) { return line(as<SerialBus>(find_bus(name))); };
@@ -176,7 +188,7 @@ StationLines Plant::lines_of(const StationConfig& station) {
     for (int n = 2; find_bus(keypad.name) != nullptr; ++n) keypad.name = fmt::format("{}_{}", name, n);
     keypad.kind = BusKind::Rs485;
     keypad.baud = xt_baud(station);
-    found.xt = line(as<SerialBus>(&add_bus(keypad)));
+    found.xt = line(as<SerialBus>(&add_bus(keypad, islands_->of_station(number))));
   }
   return found;
 }
@@ -204,7 +216,7 @@ bool Plant::run_until(Time end, const std::function<bool(Time)>& keep_going) {
   for (Time at = queue_.now(); at < end;) {
     at = keep_going ? std::min(end, (at / kMillisecond + 1) * kMillisecond) : end;
     check_expectations(at);
-    queue_.run_until(at);
+    islands_->run_until(at);
     if (keep_going && (!keep_going(at) || !machines_->failures().empty())) {
       check_expectations(at + 1);
       return false;
@@ -219,7 +231,7 @@ bool Plant::run_until(Time end, const std::function<bool(Time)>& keep_going) {
 void Plant::check_expectations(Time until) {
   for (; next_due_ < due_.size() && due_[next_due_].expectation->at < until; ++next_due_) {
     const Due& due = due_[next_due_];
-    if (due.expectation->at > queue_.now()) queue_.run_until(due.expectation->at);
+    if (due.expectation->at > queue_.now()) islands_->run_until(due.expectation->at);
     const int32_t actual = signals::value_for(due.expectation->signal, due.signal);
     results_.push_back({due.expectation, actual == due.expectation->equals, actual});
   }
@@ -233,6 +245,7 @@ bool Plant::store_memories() {
 
 void Plant::look() const {
   for (const auto& station : stations_) station->look();
+  islands_->gather();
 }
 
 bool Plant::programs_over() const {

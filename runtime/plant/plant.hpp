@@ -2,6 +2,7 @@
 // same run on any build.
 #pragma once
 
+#include <cassert>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "runtime/journal/journal.hpp"
+#include "runtime/plant/islands.hpp"
 #include "runtime/plant/machines.hpp"
 #include "runtime/plant/surroundings.hpp"
 #include "runtime/plant_file/plant_file.hpp"
@@ -47,11 +49,16 @@ class Plant final : public PlantParts {
   // Stations that a fault has stopped which no [[expect]] of the plant looked for and found.
   std::vector<const Station*> unforeseen_faults() const;
   Time now() const override { return queue_.now(); }
-  Time next_time() const { return queue_.next_time(); }  // of the next event
+  Time next_time() const { return islands_->next_time(); }  // of the next event
 
   // For what joins the plant from outside, before the first event runs: its events, and the number that puts
-  // them after those of all others.
-  EventQueue& queue() { return queue_; }
+  // them after those of all others. Not for a plant whose islands run apart.
+  EventQueue& queue() {
+    assert(islands_->count() == 1);
+    return queue_;
+  }
+  const Islands& islands() const { return *islands_; }
+  size_t island_of(const Bus& bus) const;
   uint32_t next_source() { return next_source_++; }
 
   // For a test that acts on the plant from outside while it runs.
@@ -85,8 +92,8 @@ class Plant final : public PlantParts {
 
  private:
   void look() const;  // what stations are late with they make up for
-  Bus& add_bus(const BusConfig& config);
-  StationLines lines_of(const StationConfig& station);
+  Bus& add_bus(const BusConfig& config, Islands::Place place);
+  StationLines lines_of(size_t station);
   void add_station(size_t number, std::optional<vm::Image> program, std::optional<vm::Rates> rates,
                    std::vector<PlantError>& errors, const Execution& execution);
   void power_on();
@@ -99,9 +106,11 @@ class Plant final : public PlantParts {
   EventQueue queue_;
   uint32_t next_source_ = 0;
   Journal journal_;
+  std::unique_ptr<Islands> islands_;
   std::deque<BusConfig> keypads_;  // lines that are not in the file
   std::vector<FaultConfig> of_lines_;  // that the file says of them without a [[fault]]
   std::vector<std::unique_ptr<Bus>> buses_;
+  std::vector<size_t> island_of_bus_;  // for each of them
   std::unique_ptr<Machines> machines_;
   std::unique_ptr<Surroundings> surroundings_;
   std::vector<std::unique_ptr<Station>> stations_;

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
 namespace ipos::runtime {
 namespace {
 
@@ -78,12 +81,12 @@ void TraceHash::Course::sample(Time now) {
   if (!station_.behind()) note(station_.drive().state(), now, station_.powered());
 }
 
-TraceHash::TraceHash(Plant& plant, Time step) : plant_(plant), step_(step) {
+TraceHash::TraceHash(Plant& plant, Time step) : plant_(plant), step_(step), islands_(plant.islands().count()) {
   for (const auto& bus : plant.buses()) {
     bus->add_tracer(*this);
     NumberHash name;
     name.add_text(bus->name());
-    names_.emplace_back(bus.get(), name.value());
+    names_.push_back({bus.get(), name.value(), plant.island_of(*bus)});
   }
   plant.machines().add_watcher(*this);
   for (const auto& station : plant.stations())
@@ -92,12 +95,18 @@ TraceHash::TraceHash(Plant& plant, Time step) : plant_(plant), step_(step) {
 
 void TraceHash::sample(Time now) {
   if (now % kMillisecond != 0) return;
+  add_heard(hash_);
+  for (OfIsland& island : islands_) {
+    island.heard.clear();
+    island.facts.clear();
+  }
   for (const auto& course : courses_) course->sample(now);
   if (now % step_ == 0) add_state(hash_, plant_, now);
 }
 
 uint64_t TraceHash::value() const {
   NumberHash whole = hash_;
+  add_heard(whole);
   for (const auto& station : plant_.stations()) station->look();
   for (const auto& course : courses_) whole.add(course->value());
   add_state(whole, plant_, plant_.now());
@@ -107,9 +116,31 @@ uint64_t TraceHash::value() const {
 std::string TraceHash::text() const { return fmt::format("{:016x}", value()); }
 
 void TraceHash::on_trace(const Bus& bus, std::span<const uint64_t> facts) {
-  for (const auto& [named, name] : names_)
-    if (named == &bus) hash_.add(name);
-  for (const uint64_t fact : facts) hash_.add(fact);
+  const auto named = std::find_if(names_.begin(), names_.end(), [&](const Named& one) { return one.bus == &bus; });
+  if (islands_.size() == 1) {
+    hash_.add(named->name);
+    for (const uint64_t fact : facts) hash_.add(fact);
+    return;
+  }
+  OfIsland& island = islands_[named->island];
+  const size_t begin = island.facts.size();
+  island.facts.push_back(named->name);
+  island.facts.insert(island.facts.end(), facts.begin(), facts.end());
+  island.heard.push_back({plant_.islands().moment(named->island), begin, island.facts.size()});
+}
+
+// In the order of one queue.
+void TraceHash::add_heard(NumberHash& hash) const {
+  if (islands_.size() == 1) return;
+  std::vector<std::pair<EventQueue::Moment, std::span<const uint64_t>>> all;
+  for (const OfIsland& island : islands_)
+    for (const Heard& heard : island.heard)
+      all.emplace_back(heard.moment, std::span(island.facts).subspan(heard.begin, heard.end - heard.begin));
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.first.at, a.first.source) < std::pair(b.first.at, b.first.source);
+  });
+  for (const auto& [moment, facts] : all)
+    for (const uint64_t fact : facts) hash.add(fact);
 }
 
 void TraceHash::on_given(size_t machine, Time now, std::span<const int64_t> samples) {

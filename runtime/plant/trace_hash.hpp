@@ -67,10 +67,27 @@ class TraceHash final : private BusTracer, private MachineWatcher {
   void on_trace(const Bus& bus, std::span<const uint64_t> facts) override;
   void on_given(size_t machine, Time now, std::span<const int64_t> samples) override;
 
+  // What was heard on the lines of an island, until all islands have come so far.
+  struct Heard {
+    EventQueue::Moment moment;
+    size_t begin, end;  // in facts
+  };
+  struct OfIsland {
+    std::vector<Heard> heard{};
+    std::vector<uint64_t> facts{};
+  };
+  struct Named {
+    const Bus* bus;
+    uint64_t name;  // as one number
+    size_t island;
+  };
+  void add_heard(NumberHash& hash) const;
+
   const Plant& plant_;
   Time step_;
   std::vector<std::unique_ptr<Course>> courses_;
-  std::vector<std::pair<const Bus*, uint64_t>> names_;  // of the buses, each as one number
+  std::vector<Named> names_;
+  std::vector<OfIsland> islands_;
   NumberHash hash_;
 };
 

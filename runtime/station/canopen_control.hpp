@@ -30,7 +30,6 @@ class CanopenControl final : public Control, private canopen::MasterObserver {
     port_.emplace(line_, line_.attach(name(), line_.baud(), master_));
     master_.start(queue_.now(), *port_);
   }
-  std::vector<std::string> lines() const override { return {config().sbus}; }
 
   const canopen::MasterSettings& settings() const { return settings_; }
   canopen::Master& master() { return master_; }

@@ -34,7 +34,6 @@ class Control {
   virtual AnyControl self() = 0;
   // Once, at the place of the control in the plant file: joins the lines that it has not joined yet, and begins.
   virtual void start() = 0;
-  virtual std::vector<std::string> lines() const = 0;  // their names, the SBus first
 
   const ControlConfig& config() const { return config_; }
   const std::string& name() const { return config_.name; }

@@ -25,7 +25,6 @@ class FmsControl final : public Control, private EventTarget, private profibus::
 
   AnyControl self() override { return this; }
   void start() override;
-  std::vector<std::string> lines() const override { return {settings_.bus}; }
 
   const FmsMasterConfig& settings() const { return settings_; }
 

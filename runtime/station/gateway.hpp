@@ -37,7 +37,6 @@ class Gateway final : public Control,
 
   AnyControl self() override { return this; }
   void start() override;
-  std::vector<std::string> lines() const override { return {config().sbus, gateway_.profibus.bus.bus}; }
 
   // Off: it is on neither line. On again it begins as at first; the losses of its drives are counted on.
   void power_off();

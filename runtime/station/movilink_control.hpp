@@ -22,7 +22,6 @@ class MovilinkControl final : public Control {
     port_.emplace(line_, line_.attach(name(), line_.baud(), control_));
     control_.start(*port_);
   }
-  std::vector<std::string> lines() const override { return {config().sbus}; }
 
   const SbusControl& control() const { return control_; }
 

@@ -22,7 +22,6 @@ class ProfibusControl final : public Control, private EventTarget, private profi
 
   AnyControl self() override { return this; }
   void start() override;  // plans all of it, and the master begins
-  std::vector<std::string> lines() const override { return {settings_.bus}; }
 
   const ProfibusMasterConfig& settings() const { return settings_; }
   profibus::Master& master() { return master_; }

@@ -20,6 +20,9 @@ struct Execution {
   bool fast = true;             // the fast engine; else the reference interpreter alone
   Compiler compiler = nullptr;  // for the fast engine; null: no machine code
   Pace pace = Pace::Lazy;
+  // Of a plant: 0: all events are in one queue. Else its islands (runtime/plant/islands.hpp) run apart, on up to so many
+  // threads.
+  unsigned threads = 0;
   std::shared_ptr<ProgramShelf> shelf{};  // of what is made of programs; null: each unit makes its own
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <thread>
 
 #include "runtime/bus/log/profibus_log.hpp"
 #include "runtime/bus/log/serial_log.hpp"
@@ -48,6 +49,7 @@ struct RunFlags {
   uint32_t speed = 0;
   std::string engine;
   bool no_skip = false;
+  unsigned threads = std::max(1U, std::thread::hardware_concurrency());
   std::string watch;
   std::string log;
   std::string plot;
@@ -165,8 +167,10 @@ class TraceFile {
 };
 
 // Virtual time in which nobody needs to be asked: a key and a log wait so long, at the pace of the clock a fiftieth of a
-// second (ours). Whole stretches fit between two looks at the progress.
+// second (ours). Whole stretches fit between two looks at the progress. Islands that run apart need a longer one: each
+// begins with empty caches.
 constexpr Time kStretch = 20 * runtime::kMillisecond;
+constexpr Time kStretchApart = 10 * kStretch;
 
 // When logs and traces are brought to their files.
 class FlushTimer {
@@ -251,9 +255,18 @@ Plotter plot_of(const std::string& path) {
 
 // Nobody looks at each millisecond: a plant that stands still costs a sixth where it need not stop at each.
 void run_in_stretches(runtime::Plant& plant, Time limit, const std::function<bool(Time)>& keep_going) {
+  const Time stretch = plant.islands().count() > 1 ? kStretchApart : kStretch;
   do
-    plant.run_until(std::min(limit, plant.now() + kStretch));
+    plant.run_until(std::min(limit, plant.now() + stretch));
   while (plant.now() < limit && keep_going(plant.now()));
+}
+
+// A log or a recording has what happens on all lines in its order, a profile the commands of all stations: then the lines
+// do not run apart.
+bool nobody_hears_all(const RunFlags& flags) {
+  const auto files = {flags.log, flags.serial_log, flags.plot, flags.trace, flags.profile};
+  return !flags.realtime && flags.coverage.empty() &&
+         std::all_of(files.begin(), files.end(), [](const std::string& file) { return file.empty(); });
 }
 
 int run(const RunFlags& flags) {
@@ -264,6 +277,7 @@ int run(const RunFlags& flags) {
   if (flags.speed != 0) rates = vm::Rates{{flags.speed, flags.speed, flags.speed}};
   runtime::Execution execution = execution_of(flags.engine);
   if (flags.no_skip || !flags.profile.empty()) execution.pace = runtime::Pace::InTurn;
+  if (nobody_hears_all(flags)) execution.threads = flags.threads;
   const std::unique_ptr<runtime::Plant> built =
       make_plant(std::move(input), runtime::FileUse::Write, rates, execution);
   runtime::Plant& plant = *built;
@@ -375,6 +389,9 @@ void add_run(cli::Verb& app) {
   add_engine_option(verb, flags->engine);
   verb.flag("--no-skip", flags->no_skip,
             "execute every millisecond in its turn, also where nothing happens, with equal results");
+  verb.option("--threads", flags->threads,
+              "threads for buses that nothing joins, with equal results; default: the number of cores")
+      .between(1U, 1024U);
   verb.flag("--watch", flags->watch, "*",
             "show named variables at the end, all or --watch=NAME,..., also other signals");
   verb.option(

@@ -4,6 +4,7 @@
 
 #include "runtime/drive/indices.hpp"
 #include "runtime/plant/actions.hpp"
+#include "runtime/plant_file/line_names.hpp"
 #include "runtime/plant_file/signal.hpp"
 #include "runtime/signals/find.hpp"
 #include "stdlib/parameters.hpp"
@@ -37,14 +38,6 @@ Json terminals(const Station& station, std::span<const runtime::BinaryTerminal> 
                     {"used", used.has(terminal, value)}});
   }
   return list;
-}
-
-std::vector<std::string> lines_of(const runtime::StationConfig& config) {
-  std::vector<std::string> lines;
-  for (const std::string& bus : {config.sbus, config.sbus2, config.serial.x13.bus, config.serial.xt.bus,
-                                 config.profibus.bus.bus})
-    if (!bus.empty()) lines.push_back(bus);
-  return lines;
 }
 
 // AO1 and AO2 with the functions that P640 and P643 give them.
@@ -185,7 +178,7 @@ class PlantTab final : public Tab {
     Json controls = Json::array();
     for (const auto& control : plant.controls())
       if (runtime::as<runtime::Gateway>(control.get()) == nullptr)
-        for (const std::string& bus : control->lines()) controls.push_back({{"name", control->name()}, {"bus", bus}});
+        for (const std::string& bus : runtime::line_names(control->config())) controls.push_back({{"name", control->name()}, {"bus", bus}});
     Json wires = Json::array();
     const auto name = [](const runtime::Signal& signal) { return signal.station + "." + signal.name; };
     for (const runtime::Wire& wire : plant.file().wires)
@@ -235,7 +228,7 @@ class PlantTab final : public Tab {
             {"outputs", terminals(station, runtime::binary_outputs(), "/BRAKE", used)},
             {"analog", std::move(analog)},
             {"analog_outputs", analog_outputs(station)},
-            {"lines", lines_of(config)}};
+            {"lines", runtime::line_names(config)}};
   }
 
   // A card without display and terminals.
@@ -249,7 +242,7 @@ class PlantTab final : public Tab {
             {"outputs", Json::array()},
             {"analog", Json::array()},
             {"analog_outputs", Json::array()},
-            {"lines", gateway.lines()}};
+            {"lines", runtime::line_names(gateway.config())}};
   }
 
   // --- how it stands ---
