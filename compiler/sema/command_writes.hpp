@@ -20,10 +20,15 @@ struct OrderBlock {
   bool result = false;
 };
 
+// They write nothing of their structure but its last member.
+inline bool takes_orders(vm::Opcode opcode) {
+  return opcode == vm::Opcode::Scom || opcode == vm::Opcode::Movlnk || opcode == vm::Opcode::VarInt;
+}
+
 inline OrderBlock order_block(const checked::SystemCall& call) {
   using vm::Opcode;
+  if (!takes_orders(call.opcode)) return {};
   const bool scom = call.opcode == Opcode::Scom;
-  if (!scom && call.opcode != Opcode::Movlnk && call.opcode != Opcode::VarInt) return {};
   const size_t operand = scom ? 1 : 0;
   const int32_t keyword = scom ? std::get<int32_t>(call.arguments[0]) : vm::kAnyKeyword;
   const vm::BlockInfo& row = vm::blocks_of(call.opcode, operand, keyword).front();

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "compiler/sema/block_check.hpp"
+#include "compiler/sema/command_writes.hpp"
 #include "compiler/sema/expressions.hpp"
 #include "compiler/sema/variable_use.hpp"
 #include "stdlib/language_tables.hpp"
@@ -206,8 +207,10 @@ class SystemCallChecker {
     Object all = given.object;
     all.extent = found->range;
     if (found->use != vm::BlockUse::Write) expressions_.record_read(all, given.span);
-    if (found->use != vm::BlockUse::Read) expressions_.record_write(all, given.span);
     if (found->use == vm::BlockUse::Lasting) expressions_.record_take(all, given.span);
+    const bool whole = given.object.extent && all.extent && given.object.extent->high >= all.extent->high;
+    if (takes_orders(opcode) && whole) all.extent->low = all.extent->high;  // its result alone
+    if (found->use != vm::BlockUse::Read) expressions_.record_write(all, given.span);
     return true;
   }
 

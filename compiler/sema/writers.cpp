@@ -1,11 +1,12 @@
-// Main, each task and each interrupt routine is a root; a function belongs to all roots that reach it.
+// Who writes a variable is counted by what runs beside each other: the three tasks, whichever functions they run one after
+// the other, and the interrupt routines. A function belongs to all that run it.
 #include "compiler/sema/writers.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "compiler/sema/call_graph.hpp"
+#include "compiler/sema/program_roots.hpp"
 #include "compiler/sema/walk.hpp"
 
 namespace ipos::compiler {
@@ -15,14 +16,8 @@ using checked::ExprPtr;
 
 class Writers {
  public:
-  explicit Writers(Context& context) : context_(context), roots_(context.program.functions.size()) {
-    const CallGraph graph = call_graph(context.program);
-    const std::vector<bool> alive = reachable(graph, context.program.main);
-    reach(graph, context.program.main, context.program.main);
-    for (size_t function = 0; function < graph.size(); ++function)
-      for (const Reference& reference : graph[function])
-        if (alive[function] && reference.kind == ReferenceKind::Start)
-          reach(graph, reference.function, reference.function);
+  explicit Writers(Context& context) : context_(context), roots_(context.program) {
+    for (const ProgramRoot& root : roots_.roots) beside_.push_back(lane(root));
   }
 
   void run() {
@@ -30,7 +25,7 @@ class Writers {
       if (variable.storage != Storage::Alias) several(variable);
     for (size_t n = 0; n < context_.program.functions.size(); ++n) {
       const checked::Stmt* body = context_.program.functions[n].body;
-      if (body == nullptr || roots_[n].empty()) continue;
+      if (body == nullptr || roots_.of[n].empty()) continue;
       checked::walk(*body, [&](const checked::Expr& expr) {
         if (const auto* node = std::get_if<checked::Assign>(&expr.node)) update(*node, expr.span, n);
       });
@@ -38,17 +33,11 @@ class Writers {
   }
 
  private:
-  void reach(const CallGraph& graph, size_t first, size_t root) {
-    std::vector<size_t> open{first};
-    while (!open.empty()) {
-      const size_t function = open.back();
-      open.pop_back();
-      std::vector<size_t>& known = roots_[function];
-      if (std::find(known.begin(), known.end(), root) != known.end()) continue;
-      known.push_back(root);
-      for (const Reference& reference : graph[function])
-        if (reference.kind == ReferenceKind::Call) open.push_back(reference.function);
-    }
+  // Equal for roots that never run beside each other: functions that a task runs one after the other. A routine that is
+  // installed for several interrupts is one.
+  size_t lane(const ProgramRoot& root) const {
+    constexpr size_t kTasks = 3;
+    return root.is_interrupt() ? kTasks + 1 + root.function : static_cast<size_t>(*root.task());
   }
 
   // Until the next call.
@@ -58,23 +47,49 @@ class Writers {
     const auto found = context_.accesses.find(number);
     if (found == context_.accesses.end()) return all;
     for (const auto& [writer, span, into] : found->second.writers)
-      if (writer < roots_.size()) all.insert(all.end(), roots_[writer].begin(), roots_[writer].end());
+      if (writer < roots_.of.size()) all.insert(all.end(), roots_.of[writer].begin(), roots_.of[writer].end());
     std::sort(all.begin(), all.end());
     all.erase(std::unique(all.begin(), all.end()), all.end());
     return all;
   }
 
-  const std::string& name(size_t root) const { return context_.program.functions[root].name; }
+  size_t lanes(const std::vector<size_t>& roots) const {
+    std::vector<size_t> all;
+    for (const size_t root : roots)
+      if (std::find(all.begin(), all.end(), beside_[root]) == all.end()) all.push_back(beside_[root]);
+    return all.size();
+  }
+
+  const std::string& function(size_t root) const { return context_.program.functions[roots_.roots[root].function].name; }
+
+  // By name, in the order of the functions; with its task where one function runs on two.
+  std::string list(std::vector<size_t> roots) const {
+    std::stable_sort(roots.begin(), roots.end(), [&](size_t a, size_t b) {
+      return roots_.roots[a].function < roots_.roots[b].function;
+    });
+    std::vector<std::string> names;
+    for (const size_t root : roots) {
+      const bool twice = std::any_of(roots.begin(), roots.end(), [&](size_t other) {
+        return beside_[other] != beside_[root] && roots_.roots[other].function == roots_.roots[root].function;
+      });
+      const std::string name = twice ? ProgramRoots::name(roots_.roots[root], context_.program) : fmt::format("'{}'", function(root));
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+    std::string out;
+    for (size_t n = 0; n < names.size(); ++n)
+      out += (n == 0 ? "" : n + 1 == names.size() ? " and " : ", ") + names[n];
+    return out;
+  }
 
   void several(const Variable& variable) {
     std::vector<size_t> roots;
+    size_t most = 1;
     for (uint32_t n = variable.number; n < variable.number + variable.type.size(); ++n)
-      if (const auto& more = writing_roots(n); more.size() > std::max<size_t>(roots.size(), 1)) roots = more;
-    if (roots.empty()) return;
-    std::string list;
-    for (size_t n = 0; n < roots.size(); ++n)
-      list += fmt::format("{}'{}'", n == 0 ? "" : n + 1 == roots.size() ? " and " : ", ", name(roots[n]));
-    context_.diagnostics.report(Diag::SeveralWriters, variable.span, {variable.name, list});
+      if (const auto& more = writing_roots(n); lanes(more) > most) {
+        roots = more;
+        most = lanes(more);
+      }
+    if (!roots.empty()) context_.diagnostics.report(Diag::SeveralWriters, variable.span, {variable.name, list(roots)});
   }
 
   // x = f(x) in several commands. One command reads and writes at once: x = x + 1.
@@ -95,9 +110,9 @@ class Writers {
     if (load != nullptr && reads_target(binary->left) && !reads_target(binary->right)) return;
     const auto number = static_cast<uint32_t>(node.target.number);
     for (const size_t root : writing_roots(number)) {
-      const auto& own = roots_[function];
-      if (own.size() == 1 && own.front() == root) continue;
-      context_.diagnostics.report(Diag::LostUpdate, span, {variable_name(number), name(root)});
+      const auto& own = roots_.of[function];
+      if (std::all_of(own.begin(), own.end(), [&](size_t one) { return beside_[one] == beside_[root]; })) continue;
+      context_.diagnostics.report(Diag::LostUpdate, span, {variable_name(number), this->function(root)});
       return;
     }
   }
@@ -109,7 +124,8 @@ class Writers {
   }
 
   Context& context_;
-  std::vector<std::vector<size_t>> roots_;  // of each function
+  ProgramRoots roots_;
+  std::vector<size_t> beside_;  // the lane of each root
   std::vector<size_t> writing_;
 };
 

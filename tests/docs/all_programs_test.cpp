@@ -16,9 +16,6 @@ namespace fs = std::filesystem;
 
 // "FILE CODE", and why it is right there.
 const std::set<std::string> kRight = {
-    "examples/filling-machine/FILLING.IPC W0261",            // the interrupt routine arms what main has filled
-    "examples/movilink-m07/Movilink07.IPC W0241",            // H1, as the manual's H20
-    "examples/two-tasks/TASKS.IPC W0261",                    // main resets the step when it has stopped its task
     "tests/bench/programs/fib.IPC W0209",                    // recursion, to be measured
     "tests/bench/programs/sieve.IPC W0208",                  // fills all numbers
     "tests/language/data/numof_is_constant.IPC W0291",       // a case of numof( )
@@ -34,7 +31,6 @@ const std::set<std::string> kRight = {
     "tests/language/statements/switch_no_match.IPC W0291",
     "tests/language/system/wait_argument_changed.IPC W0261",      // tasks that meet in one variable
     "tests/language/tasks/hand_over.IPC W0261",
-    "tests/language/tasks/other_function.IPC W0261",
     "tests/language/tasks/shared_function.IPC W0261",
     "tests/stdlib/blocks/RINGTASK.IPC W0261",                     // a ring between two tasks: its count changes in one command
     "tests/tools/mutate/heater/HEATER.IPC W0257",            // lDegrees, which the test forces
