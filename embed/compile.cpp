@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "compiler/compile.hpp"
+#include "compiler/diag/once.hpp"
 #include "compiler/diag/render.hpp"
 
 namespace {
@@ -48,7 +49,7 @@ ipos_status compile(ipos_compile_job& job) {
   const std::string source =
       job.source_size == 0 ? std::string(job.source) : std::string(job.source, job.source_size);
   const compiler::Compilation made = compiler::compile(job.name, job.name, source, options);
-  put_messages(job, compiler::render_text(made.diagnostics.all(), *made.sources, false));
+  put_messages(job, compiler::render_text(compiler::each_once(made.diagnostics.all(), *made.sources), *made.sources, false));
   if (!made.image) return IPOS_SOURCE_ERROR;
   const std::vector<uint8_t> image = vm::write_image(*made.image);
   job.image_size = image.size();

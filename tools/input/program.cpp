@@ -11,6 +11,7 @@
 
 #include "compiler/ast/print.hpp"
 #include "compiler/compile.hpp"
+#include "compiler/diag/once.hpp"
 #include "compiler/diag/places.hpp"
 #include "compiler/parse/parse.hpp"
 #include "compiler/sema/map.hpp"
@@ -49,7 +50,7 @@ std::string read_main(const std::string& path, const CompileFlags& flags) {
 
 void tell(const compiler::Compilation& compiled, const CompileFlags& flags) {
   if (flags.record == nullptr) return print_diagnostics(*compiled.sources, compiled.diagnostics, flags.diagnostics);
-  for (const compiler::Diagnostic& one : compiled.diagnostics.all()) {
+  for (const compiler::Diagnostic& one : compiler::each_once(compiled.diagnostics.all(), *compiled.sources)) {
     Told message{std::string(compiler::severity_word(one.severity)), "", 0, 0, one.text,
                  std::string(compiler::info(one.diag).code)};
     if (one.span.begin.valid()) {
@@ -146,7 +147,7 @@ bool is_source(std::string_view path) {
 
 void print_diagnostics(const compiler::SourceMap& sources, const compiler::Diagnostics& diagnostics,
                        const std::string& form) {
-  const auto& all = diagnostics.all();
+  const auto all = compiler::each_once(diagnostics.all(), sources);
   if (form == "json") {
     fmt::print(stderr, "{}", compiler::render_json(all, sources));
   } else if (form == "sarif") {

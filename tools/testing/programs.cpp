@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "compiler/compile.hpp"
+#include "compiler/diag/once.hpp"
 #include "compiler/diag/render.hpp"
 #include "runtime/unit/program_image.hpp"
 #include "tools/cli/files.hpp"
@@ -53,7 +54,7 @@ Program Programs::make(const ProgramName& name) const {
   if (!is_source(path)) return read_image(path, *text);
   compiler::Compilation compiled = compile_for_test(name, *text, flags_);
   const auto& all = compiled.diagnostics.all();
-  program.messages = compiler::render_text(all, *compiled.sources, false);
+  program.messages = compiler::render_text(compiler::each_once(all, *compiled.sources), *compiled.sources, false);
   for (const compiler::Diagnostic& diagnostic : all) {
     const uint32_t line = compiled.sources->position(diagnostic.span.begin).line;
     program.diagnostics.push_back({std::max(line, 1U), std::string(compiler::info(diagnostic.diag).code)});
