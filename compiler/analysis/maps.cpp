@@ -89,6 +89,7 @@ class Maps {
       const auto kind = static_cast<size_t>(code.operands[0]);
       if (kind == 0 || kind >= std::size(kKinds)) continue;
       TelegramMap& telegram = all.emplace_back();
+      telegram.address = graph_.commands[command].address;
       telegram.line = line_of(command);
       telegram.kind = kKinds[kind];
       const stdlib::Structure& structure = *stdlib::find_structure(kTypes[kind]);

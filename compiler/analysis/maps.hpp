@@ -28,6 +28,7 @@ struct CallMap {
 
 // Of a command that sets up an object; a member is there where the code gives it a constant.
 struct TelegramMap {
+  uint32_t address = 0;
   uint32_t line = 0;
   std::string kind;  // "cyclic", "acyclic", "receive"
   std::optional<int64_t> object, cycle_ms, offset_ms, format, data;  // data: the variable that it begins at

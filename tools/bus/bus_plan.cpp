@@ -7,9 +7,11 @@
 #include "runtime/bus/can/identifier_text.hpp"
 #include "runtime/bus_plan/plan.hpp"
 #include "tools/bus/bus_verbs.hpp"
+#include "tools/bus/reaction.hpp"
 #include "tools/cli/exit_codes.hpp"
 #include "tools/cli/json_text.hpp"
 #include "tools/input/plant_input.hpp"
+#include "tools/input/plant_objects.hpp"
 #include "tools/input/program.hpp"
 
 namespace ipos::tools {
@@ -27,6 +29,7 @@ struct PlanFlags {
   std::string trial;
   std::string acyclic;
   std::string format = "text";
+  bool reaction = false;
   CompileFlags compile;
 };
 
@@ -223,7 +226,20 @@ nlohmann::ordered_json profibus_json(const runtime::ProfibusLinePlan& line) {
   return entry;
 }
 
-std::string json_report(const BusPlan& plan) {
+nlohmann::ordered_json reaction_json(const Reaction& one) {
+  const auto or_null = [](const std::optional<Time>& time) {
+    return time ? nlohmann::ordered_json(*time) : nlohmann::ordered_json();
+  };
+  return {{"line", one.line},
+          {"sender", one.sender},
+          {"object", one.object},
+          {"receiver", one.receiver},
+          {"from_input_ns", or_null(one.from_input)},
+          {"from_telegram_ns", or_null(one.from_telegram)},
+          {"because", one.because}};
+}
+
+std::string json_report(const BusPlan& plan, const std::optional<std::vector<Reaction>>& reactions) {
   using nlohmann::ordered_json;
   ordered_json report = {{"trial_ns", plan.trial}, {"acyclic_ns", plan.acyclic}};
   report["lines"] = ordered_json::array();
@@ -240,6 +256,10 @@ std::string json_report(const BusPlan& plan) {
                                   {"line", finding.line},
                                   {"text", finding.text}});
   }
+  if (reactions) {
+    report["reactions"] = ordered_json::array();
+    for (const Reaction& one : *reactions) report["reactions"].push_back(reaction_json(one));
+  }
   return json_text(report) + "\n";
 }
 
@@ -248,9 +268,18 @@ int plan_bus(const PlanFlags& flags) {
   if (!flags.trial.empty()) options.trial = runtime::parse_duration(flags.trial);
   if (!flags.acyclic.empty()) options.acyclic = runtime::parse_duration(flags.acyclic);
   const auto plant = make_plant(read_plant_input(flags.plant, flags.compile, "sbus"), runtime::FileUse::Look);
-  const BusPlan plan = make_plan(*plant, options);
+  const std::vector<ObjectFinding> objects = object_findings(*plant);
+  BusPlan plan = make_plan(*plant, options);
+  for (const ObjectFinding& one : objects)
+    if (one.finding.kind != runtime::FindingKind::Formats)  // which the trial has found
+      plan.findings.push_back({one.finding.kind, one.finding.line,
+                               one.place.file.empty() ? one.finding.text
+                                                      : fmt::format("{} ({}:{}:{})", one.finding.text, one.place.file,
+                                                                    one.place.line, one.place.column)});
+  std::optional<std::vector<Reaction>> reacts;
+  if (flags.reaction) reacts = reactions(*plant, plan);
   if (flags.format == "json") {
-    fmt::print("{}", json_report(plan));
+    fmt::print("{}", json_report(plan, reacts));
   } else {
     for (const LinePlan& line : plan.lines) fmt::print("{}", line_text(line));
     const char* gap = "";
@@ -258,6 +287,7 @@ int plan_bus(const PlanFlags& flags) {
       fmt::print("{}{}", std::exchange(gap, "\n"), serial_text(line, plan.trial));
     for (const auto& line : plan.profibus_lines)
       fmt::print("{}{}", std::exchange(gap, "\n"), profibus_text(line));
+    if (reacts) fmt::print("{}{}", std::exchange(gap, ""), reactions_text(*reacts));
     if (!plan.lines.empty()) fmt::print("{}{}", gap, assumptions(plan));
     for (const Finding& finding : plan.findings) fmt::print(stderr, "{}", finding_text(finding));
   }
@@ -279,6 +309,7 @@ void add_bus_plan(cli::Verb& bus) {
       .check(check_time, "TIME");
   verb.option("--acyclic", flags->acyclic, "assumed distance of telegrams the trial shows once; default 10ms")
       .check(check_distance, "TIME");
+  verb.flag("--reaction", flags->reaction, "the worst reaction from inputs and telegrams to outputs over the line");
   verb.option("--format", flags->format, "text or json").one_of({"text", "json"});
   add_plant_options(verb, flags->compile);
   verb.footer("Example:\n  ipos bus plan examples/scom/scom.toml");

@@ -24,6 +24,7 @@
 #include "tools/input/mistakes.hpp"
 #include "tools/input/offers.hpp"
 #include "tools/input/plant_input.hpp"
+#include "tools/input/plant_objects.hpp"
 #include "tools/input/plant_source.hpp"
 #include "tools/input/program.hpp"
 #include "tools/logs/log_writer.hpp"
@@ -281,6 +282,7 @@ int run(const RunFlags& flags) {
   const std::unique_ptr<runtime::Plant> built =
       make_plant(std::move(input), runtime::FileUse::Write, rates, execution);
   runtime::Plant& plant = *built;
+  tell_objects(plant);
 
   if (flags.signals == std::vector<std::string>{"list"}) {
     fmt::print("{}", signal_list(plant, flags.format == "json"));

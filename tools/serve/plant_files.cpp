@@ -12,6 +12,7 @@
 #include "tools/cli/files.hpp"
 #include "tools/cli/outputs.hpp"
 #include "tools/examples/examples.hpp"
+#include "tools/input/plant_objects.hpp"
 #include "tools/input/plant_source.hpp"
 #include "tools/input/sources.hpp"
 #include "tools/lsp_base/positions.hpp"
@@ -163,7 +164,7 @@ Build PlantFiles::build() {
   try {
     if (kind_of_file(path_) != runtime::TomlKind::Test) {  // a plant that stands in a test is read with it
       PlantInput input = read_plant_input(path_, flags);
-      make_plant(input, runtime::FileUse::Look, {}, execution_of(), &record);  // tells what its units refuse
+      tell_objects(*make_plant(input, runtime::FileUse::Look, {}, execution_of(), &record), &record);  // and what its units refuse
       for (const runtime::StationConfig& station : input.file.stations) build.stations.push_back(station.name);
       build.programs = input.programs;
       build.make.emplace([input = std::move(input)] { return make_plant(input, runtime::FileUse::Look); });
