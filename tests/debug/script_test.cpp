@@ -52,6 +52,35 @@ TEST(DebugScript, SnapshotsGiveTheSameSessionAsRunningAnew) {
   EXPECT_EQ(debug(kBack).output, anew.output);
 }
 
+// A round has four commands and takes 5 ms at a command a millisecond with its wait; the 300th has one more. So the 600th
+// begins after 4 * 599 + 1 commands, at 5 * 599 + 1 ms.
+TEST(DebugScript, WhoChangedAValueLast) {
+  const std::string script = "until 3s\nb 8 if lCount == 700\nwho lWrong\nwho lCount\nwho H99\np lCount\nc\np lCount\nquit\n";
+  const ScriptResult result = debug(script);
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  for (const char* text : {"lWrong: 0 -> 1 by MAIN task 1, main at MAIN.IPC:8 (1497.000 ms, 1198 commands)\n",
+                           "lCount: 599 -> 600 by MAIN task 1, main at MAIN.IPC:7 (2996.000 ms, 2397 commands)\n",
+                           "nobody has changed H99 = 0 so far\n", "lCount = 600\n", "lCount = 700\n"})
+    EXPECT_NE(result.output.find(text), std::string::npos) << text << "\n" << result.output;
+  EXPECT_EQ(debug(script, "--no-snapshots").output, result.output);
+}
+
+// A round of the loop: increment, compare, wait, jump.
+TEST(DebugScript, CostOfARound) {
+  const ScriptResult result = debug("info cost\nb 7\nc\nc\nc\ninfo cost\nquit\n");
+  EXPECT_NE(result.output.find("nothing has run since the session began\n"), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("5.000 ms since the stop before\n  MAIN task 1: 4 commands\n"), std::string::npos) << result.output;
+}
+
+TEST(DebugScript, WhoLeavesWhatStandsThere) {
+  const ScriptResult result =
+      debug("until 3s\nset lWrong = 5\nwho lWrong\nwatch lWrong\nwho lWrong\np lWrong\nb 7\nc\nwho lCount\nc\nquit\n");
+  EXPECT_NE(result.output.find("lWrong: 1 -> 5 by no command: a telegram, the unit, a stimulus or 'set' (3000.000 ms"), std::string::npos)
+      << result.output;
+  EXPECT_NE(result.output.find("lWrong = 5\n"), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("Breakpoint 2\n"), std::string::npos) << result.output;
+}
+
 // A script of another system.
 TEST(DebugScript, LinesMayEndWithCrLf) {
   std::string script = kBack;

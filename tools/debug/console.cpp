@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <utility>
 
 namespace ipos::tools::debug {
 
@@ -24,6 +25,7 @@ const std::vector<Console::Command>& Console::commands() {
        [](C& c, const S& a) { c.logpoint(a); }},
       {"watch", "", "VALUE [if EXPR]", "stop behind changes of a variable, parameter, input or output",
        [](C& c, const S& a) { c.watch(a); }},
+      {"who", "", "VALUE", "who changed it last, where and when", [](C& c, const S& a) { c.who(a); }},
       {"catch", "", "FRAME", "stop behind the millisecond in which such a frame or telegram came: 40A#80*, sbus1 40A#*",
        [](C& c, const S& a) { c.catch_frame(a); }},
       {"condition", "", "N [EXPR]", "change the condition of a breakpoint",
@@ -64,7 +66,7 @@ const std::vector<Console::Command>& Console::commands() {
       {"set", "", "VALUE = EXPR", "write a variable, parameter or input", [](C& c, const S& a) { c.set(a); }},
       {"disassemble", "disas", "[FUNCTION|ADDRESS]", "the commands around",
        [](C& c, const S& a) { c.disassemble(a); }},
-      {"info", "i", "tasks|sbus|breakpoints|io|snapshots", "", [](C& c, const S& a) { c.info(a); }},
+      {"info", "i", "tasks|sbus|breakpoints|io|cost|snapshots", "", [](C& c, const S& a) { c.info(a); }},
       {"task", "", "[UNIT] N", "look at another task", [](C& c, const S& a) { c.select_task(a); }},
       {"help", "h", "", "", [](C& c, const S&) { c.help(); }},
       {"quit", "q", "", "", [](C& c, const S&) { c.over_ = true; }},
@@ -89,6 +91,7 @@ void Console::attach(Debugger& debugger) {
   debugger_ = &debugger;
   const std::vector<TaskRef> tasks = debugger.tasks();
   if (!tasks.empty()) current_ = tasks.front();
+  spent_[1] = spent();
 }
 
 bool Console::execute(const std::string& line) {
@@ -127,18 +130,28 @@ void Console::go(Motion motion, bool backward, const std::string& count) {
   run(debugger_->order_for(motion, current_, backward));
 }
 
-// After Debugger::run another process may go on, which knows nothing of locals: only members are used.
 void Console::run(const Order& order) {
   motion_ = order.motion;
   frames_.listen(!order.backward);
-  Stop stop = debugger_->run(order);
-  while (more_ > 0 && stop.reason == Reason::Step) {
-    --more_;
-    frames_.listen(true);
-    stop = debugger_->run(debugger_->order_for(motion_, current_));
+  carry_on(debugger_->run(order));
+}
+
+// After Debugger::run and return_to another process may go on, behind the call of one of them that it was copied in, and knows
+// nothing of locals: only members are used.
+void Console::carry_on(Stop stop) {
+  for (;;) {
+    if (!asks_.is_null()) {
+      if (answer_who(stop)) return;
+      stop = debugger_->return_to(asks_["from"].get<Position>());
+    } else if (more_ > 0 && stop.reason == Reason::Step) {
+      --more_;
+      frames_.listen(true);
+      stop = debugger_->run(debugger_->order_for(motion_, current_));
+    } else {
+      more_ = 0;
+      return show_stop(stop);
+    }
   }
-  more_ = 0;
-  show_stop(stop);
 }
 
 void Console::show_journal() {
@@ -151,6 +164,7 @@ void Console::show_journal() {
 }
 
 void Console::show_stop(const Stop& stop) {
+  spent_[0] = std::exchange(spent_[1], spent());
   show_journal();
   if (stop.task.task != 0 && stop.task != current_) {
     current_ = stop.task;
@@ -214,7 +228,7 @@ std::vector<std::string> Console::complete(std::string_view line) const {
     for (const Command& command : commands()) offer(command.name);
     return words;
   }
-  for (const char* word : {"tasks", "sbus", "breakpoints", "io", "snapshots"})
+  for (const char* word : {"tasks", "sbus", "breakpoints", "io", "cost", "snapshots"})
     if (line.starts_with("i")) offer(word);
   for (const auto& station : debugger_->plant().stations()) {
     if (station->image() == nullptr) continue;
@@ -226,7 +240,8 @@ std::vector<std::string> Console::complete(std::string_view line) const {
 
 Json Console::save() {
   return {{"task", current_},          {"last", last_line_},     {"told", told_},           {"input", save_input()},
-          {"frames", frames_.save()}, {"displays", displays_}, {"display", last_display_}};
+          {"frames", frames_.save()}, {"displays", displays_}, {"display", last_display_},
+          {"asks", asks_},             {"spent", spent_}};
 }
 
 void Console::load(const Json& state) {
@@ -237,6 +252,9 @@ void Console::load(const Json& state) {
   frames_.load(state["frames"]);
   displays_ = state["displays"].get<std::vector<std::pair<int, std::string>>>();
   last_display_ = state["display"];
+  asks_ = state["asks"];
+  spent_[0] = state["spent"][0].get<Spent>();
+  spent_[1] = state["spent"][1].get<Spent>();
   load_input(state["input"]);
 }
 

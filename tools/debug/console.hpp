@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "tools/debug/frame_points.hpp"
@@ -43,6 +44,7 @@ class Console final : public FrontEnd {
 
   void go(Motion motion, bool backward, const std::string& count);
   void run(const Order& order);
+  void carry_on(Stop stop);
   void show_stop(const Stop& stop);
   void show_place();
   void show_journal();
@@ -51,6 +53,9 @@ class Console final : public FrontEnd {
   void logpoint(const std::string& arguments);
   void watch(const std::string& arguments);
   void catch_frame(const std::string& arguments);
+  void who(const std::string& arguments);
+  bool answer_who(const Stop& stop);
+  std::string change_text(const Stop& stop) const;
   void display(const std::string& arguments);
   void undisplay(const std::string& arguments);
   void show_displays();
@@ -71,6 +76,7 @@ class Console final : public FrontEnd {
   void info_breakpoints();
   void info_io();
   void info_snapshots();
+  void info_cost();
   void select_task(const std::string& arguments);
   void help();
 
@@ -83,6 +89,14 @@ class Console final : public FrontEnd {
   std::string source_line(const std::string& file, uint32_t line);
   uint32_t station_named(std::string_view name) const;  // throws ValueError
   TaskRef task_with_frames() const;
+
+  // Commands that each task has executed at a stop.
+  struct Spent {
+    runtime::Time time = 0;
+    std::vector<std::pair<TaskRef, uint64_t>> tasks;
+    NLOHMANN_DEFINE_TYPE_INTRUSIVE(Spent, time, tasks)
+  };
+  Spent spent() const;
 
   Debugger* debugger_ = nullptr;
   Print print_;
@@ -97,6 +111,8 @@ class Console final : public FrontEnd {
   FramePoints frames_;
   std::vector<std::pair<int, std::string>> displays_;  // number; arguments of print
   int last_display_ = 0;
+  Spent spent_[2];       // at the stop before, and at this one
+  Json asks_ = nullptr;  // `who` is looking back: what it found, and what it will put back
 };
 
 }  // namespace ipos::tools::debug

@@ -111,6 +111,49 @@ void Console::catch_frame(const std::string& arguments) {
   print_(fmt::format("Breakpoint {}: frame {}\n", frames_.all().back().first, arguments));
 }
 
+// Goes back to the last change as `rc` does with a watchpoint, and returns (answer_who).
+void Console::who(const std::string& arguments) {
+  const ValuePlace place = evaluate_place(debugger_->plant(), current_.station, arguments);
+  asks_ = {{"name", place.name},
+           {"value", value_text(place)},
+           {"from", debugger_->position()},
+           {"breakpoints", debugger_->breakpoints()},
+           {"watchpoints", debugger_->watchpoints()}};
+  debugger_->breakpoints().clear();
+  debugger_->watchpoints() = {{0, place.station, place, "", true, 0}};
+  more_ = 0;
+  run(debugger_->order_for(Motion::Continue, current_, true));
+}
+
+// Behind the way back, and behind the way forth. True: it was the latter.
+bool Console::answer_who(const Stop& stop) {
+  if (!asks_.contains("found")) {
+    asks_["found"] = stop.reason == Reason::Data ? change_text(stop)
+                                                 : fmt::format("nobody has changed {} = {} so far\n", asks_["name"].get<std::string>(),
+                                                               asks_["value"].get<std::string>());
+    return false;
+  }
+  debugger_->breakpoints() = asks_["breakpoints"].get<std::vector<Breakpoint>>();
+  debugger_->watchpoints() = asks_["watchpoints"].get<std::vector<Watchpoint>>();
+  print_(asks_["found"].get<std::string>());
+  asks_ = nullptr;
+  return true;
+}
+
+// At the stop in front of it.
+std::string Console::change_text(const Stop& stop) const {
+  const Position& at = debugger_->position();
+  std::string by = "no command: a telegram, the unit, a stimulus or 'set'";
+  if (stop.task.task != 0) {
+    by = debugger_->task_name(stop.task);
+    const std::vector<Frame> frames = debugger_->frames(stop.task);
+    if (!frames.empty())
+      by += fmt::format(", {} at {}", frames.front().function,
+                        frames.front().place.line == 0 ? fmt::format("word {}", frames.front().address) : frames.front().place.text());
+  }
+  return fmt::format("{} by {} ({:.3f} ms, {} commands)\n", stop.text, by, static_cast<double>(at.time) / 1e6, at.commands);
+}
+
 void Console::condition(const std::string& arguments) {
   std::istringstream in(arguments);
   int id = 0;

@@ -169,7 +169,33 @@ void Console::info(const std::string& arguments) {
   if (is("sbus") && arguments != "s") return info_sbus();
   if (is("snapshots") && arguments != "s") return info_snapshots();
   if (is("io")) return info_io();
-  throw ValueError("info knows tasks, breakpoints, sbus, io and snapshots");
+  if (is("cost")) return info_cost();
+  throw ValueError("info knows tasks, breakpoints, sbus, io, cost and snapshots");
+}
+
+// A start of the task begins to count anew, and so does a way back.
+void Console::info_cost() {
+  const Spent &before = spent_[0], &now = spent_[1];
+  if (before.tasks.empty()) return print_("nothing has run since the session began\n");
+  print_(fmt::format("{:.3f} ms since the stop before\n", static_cast<double>(now.time - before.time) / 1e6));
+  for (const auto& [task, commands] : now.tasks) {
+    const auto from = std::find_if(before.tasks.begin(), before.tasks.end(), [&](const auto& one) { return one.first == task; });
+    const uint64_t until_then = from == before.tasks.end() || from->second > commands ? 0 : from->second;
+    if (commands != until_then) print_(fmt::format("  {}: {} commands\n", debugger_->task_name(task), commands - until_then));
+  }
+}
+
+// Of a task with its interrupt routines.
+Console::Spent Console::spent() const {
+  Spent all{debugger_->position().time, {}};
+  for (const TaskRef task : debugger_->tasks(true)) {
+    const vm::Machine& machine = *debugger_->machine(task.station);
+    uint64_t commands = 0;
+    for (int context = 1; context <= vm::kContexts; ++context)
+      if (machine.context(context).task == task.task) commands += machine.context(context).commands;
+    all.tasks.emplace_back(task, commands);
+  }
+  return all;
 }
 
 void Console::info_tasks() {

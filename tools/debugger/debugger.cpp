@@ -105,6 +105,19 @@ Stop Debugger::visit(Time time) {
   return go();
 }
 
+Stop Debugger::return_to(const Position& moment) {
+  const Stop there{Reason::Step, {}, {}, {}};
+  if (position_ >= moment) return there;
+  goal_ = {};
+  goal_.kind = Goal::Kind::Replay;
+  goal_.end = start_ = moment;
+  goal_.stop = there;
+  const Position* snapshot = snapshots_ ? snapshots_->before(moment, false) : nullptr;
+  if (snapshot != nullptr && *snapshot > position_ && is_far(position_, *snapshot)) snapshots_->go_on_from(*snapshot, save());
+  prime();
+  return go();
+}
+
 void Debugger::drop_later() {
   if (furthest_ <= position_) return;
   const size_t dropped = std::erase_if(changes_, [this](const Change& change) { return change.at > position_; });

@@ -75,6 +75,8 @@ class Debugger final : private runtime::CommandRunner {
   // To the end of the millisecond of that time, back or on within what was reached; the plant stands there. What the user
   // did later is kept. Where the front end does not keep going it ends with Pause on the way, and the next visit goes on.
   Stop visit(runtime::Time time);
+  // On to a moment from which a search has gone back; what the user did stays.
+  Stop return_to(const Position& moment);
   // The latest moment of this run. Who runs on from an earlier one, or changes something there, drops what came later.
   const Position& furthest() const { return furthest_; }
   // From the beginning up to here, without copies: for a copy of the process that gathers what was not gathered before.
