@@ -9,7 +9,6 @@ command -v wine >/dev/null || skip "wine is not installed"
 command -v npm >/dev/null || skip "there is no node and npm here"
 kind=$2
 command -v x86_64-w64-mingw32-gcc >/dev/null || skip "the cross compiler is not installed"
-x86_64-w64-mingw32-gcc -O1 -Wall -Wextra -Werror -o "$(dirname "$1")/pipes.exe" "$(dirname "$0")/pipes.c"
 [ "$kind" != web ] || [ -x /usr/bin/chromium ] || skip "/usr/bin/chromium is not installed"
 export IPOS_EXE=$(realpath "$1")
 here=$(cd "$(dirname "$0")" && pwd) project=$(cd "$(dirname "$0")/../.." && pwd)
