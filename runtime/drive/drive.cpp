@@ -64,6 +64,7 @@ Drive::Drive(ParameterStore& parameters, const MachineData& machine)
       state_(Axis(machine_of(machine, parameters))),
       least_dc_link_(state_.axis.machine().dc_link / 100 * kLowLinkPercent),
       shown_for_(settings_version_ - 1) {
+  counting_words_ = find_counting_words();
   now_.set(&Situation::starting_up, starting_up());
   if (!parameters.options().mains) begin_without_mains();
   parameters.connect(*this);
@@ -72,6 +73,7 @@ Drive::Drive(ParameterStore& parameters, const MachineData& machine)
 void Drive::read_settings() const {
   settings_version_ = parameters_.changes();
   settings_ = reader_.read(parameters_);
+  counting_words_ = find_counting_words();
 }
 
 // --- process data ---

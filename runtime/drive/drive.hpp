@@ -140,18 +140,21 @@ class Drive final : private DriveLink {
   // --- what it shows ---
   Words pi() const;
   // Those of its words that may change in a tick in which nothing is decided, the first in bit 0.
-  uint16_t counting_words() const;
+  uint16_t counting_words() const {
+    settings();
+    return counting_words_;
+  }
   const FurtherWords& further_pi() const { return further_pi_; }
   Verdict verdict() const { return verdict_of(decided()); }  // what it is told, and why not more
-  UnitCondition condition() const;
+  UnitCondition condition() const { return told().condition; }
   char display() const;  // the seven-segment display: a digit, 't' waiting, 'F' fault
   bool ready() const { return decided().ready; }
   bool po_data_enabled() const;
   // Bits of the present control word that are 1 though they are to be sent as 0; they have no effect.
   uint16_t reserved_control_bits() const { return decided().reserved_control_bits; }
-  uint16_t status_word_1() const;
-  uint16_t status_word_2() const;                            // high byte: virtual output terminals DO10..DO17
-  uint16_t status_word_3() const { return status_block(); }  // high byte in no manual read; 0 is ours
+  uint16_t status_word_1() const { return told().status_word_1; }
+  uint16_t status_word_2() const;  // high byte: virtual output terminals DO10..DO17
+  uint16_t status_word_3() const { return told().status_word_1 & 0xFF; }  // high byte in no manual read; 0 is ours
   const Setpoint& setpoint() const { return state_.setpoint; }  // of the last tick
   const AxisState& axis() const { return state_.axis.state(); }
   // Of axis(), for who looks every millisecond.
@@ -219,6 +222,7 @@ class Drive final : private DriveLink {
   void on_parameter_written(uint16_t index, int32_t value) override;
 
   void read_settings() const;
+  uint16_t find_counting_words() const;
   const ParameterSet& set() const { return settings().sets[now_->second_set ? 1 : 0]; }
   const ParameterSet& other_set() const { return settings().sets[now_->second_set ? 0 : 1]; }
 
@@ -255,7 +259,11 @@ class Drive final : private DriveLink {
   bool starting_up() const { return state_.up_ms < parameters_.options().start_up_ms; }
   bool heard(PoSource source) const { return now_->heard[static_cast<size_t>(source)]; }
   FaultResponse response_of(uint8_t number) const;
+  struct Told;
+  const Told& told() const;
+  void tell_anew() const;
   UnitCondition enabled_condition() const;
+  UnitCondition read_condition() const;
   uint8_t status_block() const;
   uint16_t pi_word(size_t n) const;
   int32_t user_display() const;
@@ -310,6 +318,7 @@ class Drive final : private DriveLink {
   SettingsReader reader_;
   mutable Settings settings_;
   mutable uint32_t settings_version_;
+  mutable uint16_t counting_words_ = 0;  // by the settings
 
   // What was made of process data, and of which.
   struct KnownOrder {
@@ -326,6 +335,13 @@ class Drive final : private DriveLink {
   mutable Decisions decisions_;
   mutable bool decisions_known_ = false;
   mutable bool applied_ = false;  // latches, faults and parameter set follow from these decisions already
+  // What is told of them and of the axis, to who asks in each millisecond whether it is another.
+  struct Told {
+    uint64_t moment = 0;  // what it was told of: see told()
+    UnitCondition condition{};
+    uint16_t status_word_1 = 0;
+  };
+  mutable Told told_;
   // The rest of what follows from them, as far as it has been asked for.
   mutable std::optional<Command> order_for_;
   AxisOrder order_;
@@ -395,6 +411,19 @@ struct Drive::Moment {
   State state;
   Situation situation;
 };
+
+// Condition and status follow from what is decided, whose changes are counted, and from these. The count begins with 1.
+inline const Drive::Told& Drive::told() const {
+  decided();
+  const uint64_t moment = uint64_t{now_.changes()} << 32 | uint64_t{starting_up()} << 5 | uint64_t{output_stage()} << 4 |
+                          uint64_t{standing()} << 3 | uint64_t{state_.stopped_by_setpoint} << 2 |
+                          uint64_t{state_.setpoint.speed > 0} << 1 | uint64_t{state_.setpoint.speed < 0};
+  if (moment != told_.moment) {
+    tell_anew();
+    told_.moment = moment;
+  }
+  return told_;
+}
 
 inline Drive::Moment Drive::moment() const {
   decided();

@@ -36,7 +36,7 @@ UnitCondition Drive::enabled_condition() const {
   return mode >= kVfcSpeedControl && !now_->second_set ? UnitCondition::SpeedControl : UnitCondition::Enable;
 }
 
-UnitCondition Drive::condition() const {
+UnitCondition Drive::read_condition() const {
   if (starting_up() || now_->link_is_low) return UnitCondition::NotReady;
   if (parameters_.factory_setting_running()) return UnitCondition::FactorySetting;
   if (now_->faults.error()) return UnitCondition::NotReady;
@@ -80,16 +80,16 @@ uint8_t Drive::status_block() const {
   return static_cast<uint8_t>(block);
 }
 
-uint16_t Drive::status_word_1() const {
-  const UnitCondition now = condition();
+void Drive::tell_anew() const {
+  const UnitCondition now = told_.condition = read_condition();
   uint8_t high = static_cast<uint8_t>(now);
   if (now == UnitCondition::FactorySetting && traits_.has(Trait::FactorySettingIs5)) high = 5;
   if (now_->faults.shown() != 0) high = now_->faults.shown();
-  return static_cast<uint16_t>((high << 8) | status_block());
+  told_.status_word_1 = static_cast<uint16_t>((high << 8) | status_block());
 }
 
 uint16_t Drive::status_word_2() const {
-  return static_cast<uint16_t>((state_.outputs.levels() & 0xFF00U) | status_block());
+  return static_cast<uint16_t>((state_.outputs.levels() & 0xFF00U) | status_word_3());
 }
 
 Drive::Words Drive::pi() const {
@@ -98,11 +98,11 @@ Drive::Words Drive::pi() const {
   return words;
 }
 
-uint16_t Drive::counting_words() const {
+uint16_t Drive::find_counting_words() const {
   const bool noisy = state_.axis.machine().noise != 0;
   unsigned words = 0;
   for (size_t n = 0; n < kProcessWords; ++n) {
-    const auto assignment = static_cast<PiAssignment>(settings().pi[n]);
+    const auto assignment = static_cast<PiAssignment>(settings_.pi[n]);
     const bool position = assignment == PiAssignment::PositionLow || assignment == PiAssignment::PositionHigh;
     const bool measured = assignment == PiAssignment::Speed || assignment == PiAssignment::RelativeSpeed ||
                           assignment == PiAssignment::OutputCurrent || assignment == PiAssignment::ActiveCurrent;

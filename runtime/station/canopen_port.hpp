@@ -31,10 +31,11 @@ class CanopenPort final : public StationPort,
   // counts.
   Time tick(Time now) override {
     const uint32_t executed = door_.executed();
-    if (std::exchange(seen_, executed) != executed || node_->follows(door_.counting_words())) node_->unit_changed(now);
+    const uint16_t counting = door_.counting_words();
+    if (std::exchange(seen_, executed) != executed || node_->follows(counting)) node_->unit_changed(now);
     const int64_t ms = now / kMillisecond;
     const int64_t due = objects_.tick(ms, door_.variables_in_turn());
-    if (node_->follows(door_.counting_words())) return now + kMillisecond;
+    if (node_->follows(counting)) return now + kMillisecond;
     return due == INT64_MAX ? kNever : now + (due - ms) * kMillisecond;
   }
   bool has_waiting_frames() const override { return line_.has_waiting(node()); }

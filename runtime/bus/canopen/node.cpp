@@ -79,7 +79,8 @@ void Node::listen() {
   sender.listen(identifier(Connection::Nmt));
   sender.listen(identifier(Connection::SdoRequest, number));
   sender.listen(identifier(Connection::ErrorControl, number));
-  sender.listen(dictionary_.value(objects::kSyncId) & objects::kIdMask);
+  sync_id_ = dictionary_.value(objects::kSyncId) & objects::kIdMask;
+  sender.listen(sync_id_);
   for (const ReceivePdo& pdo : receive_)
     if (pdo.id()) sender.listen(*pdo.id());
   for (const TransmitPdo& pdo : transmit_)
@@ -97,7 +98,7 @@ bool Node::on_frame(Time now, const Frame& frame) {
     take_nmt(now, frame);
     return true;
   }
-  if (frame.id == (dictionary_.value(objects::kSyncId) & objects::kIdMask)) {
+  if (frame.id == sync_id_) {
     take_sync(now, frame);
     mine = true;
   }
@@ -240,7 +241,9 @@ void Node::unit_changed(Time now) {
   const UnitStatus status = unit_.status(now);
   emergency_.set(now, Cause::Fault, status.fault, status.status_word_1);
   emergency_.set(now, Cause::MainsMissing, status.mains_missing, status.status_word_1);
-  for (TransmitPdo& pdo : transmit_) pdo.inputs_changed(now);
+  if (std::none_of(transmit_.begin(), transmit_.end(), [](const TransmitPdo& pdo) { return pdo.sends_on_change(); })) return;
+  const Words words = unit_.input(now);
+  for (TransmitPdo& pdo : transmit_) pdo.inputs_changed(now, words);
 }
 
 void Node::ignore(Time now, const Frame& frame, IgnoredMessage reason) {

@@ -93,6 +93,7 @@ class Node final : private EventTarget,
   NodeObserver* observer_;
   State state_ = State::BootUp;
   ObjectDictionary dictionary_;
+  uint32_t sync_id_ = 0;  // as the dictionary says
   ObjectAccess access_;
   SdoServer server_;
   Timer sdo_timeout_;

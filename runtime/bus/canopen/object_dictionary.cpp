@@ -70,4 +70,10 @@ void ObjectDictionary::set(Address address, uint32_t value) {
   entries_[static_cast<size_t>(find(address) - entries_.data())].value = value;
 }
 
+void ObjectDictionary::set_outputs(const std::array<uint16_t, objects::kProcessWords>& words, uint16_t which) {
+  Entry* const first = &entries_[static_cast<size_t>(find({objects::kOutput, 1}) - entries_.data())];
+  for (size_t n = 0; n < words.size(); ++n)
+    if ((which >> n & 1) != 0) first[n].value = words[n];
+}
+
 }  // namespace ipos::runtime::canopen

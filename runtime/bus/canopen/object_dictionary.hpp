@@ -2,6 +2,7 @@
 // The parameters of the unit are not in it; they keep their values where they always are.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -126,6 +127,8 @@ class ObjectDictionary {
   // Of an entry that there is.
   uint32_t value(uint16_t index, uint8_t sub = 0) const { return find({index, sub})->value; }
   void set(Address address, uint32_t value);
+  // The process words PO1 to PO10 of which the bit is set, PO1 in bit 0.
+  void set_outputs(const std::array<uint16_t, objects::kProcessWords>& words, uint16_t which);
 
  private:
   static std::vector<Entry> defaults();  // of node 0, in rising order

@@ -87,8 +87,7 @@ void ReceivePdo::on_sync(Time now) {
 void ReceivePdo::deliver(Time now, const PdoData& data) {
   Words words{};
   const uint16_t written = unpack(mapping_, data, words);
-  for (uint8_t n = 0; n < words.size(); ++n)
-    if ((written >> n & 1) != 0) dictionary_.set({objects::kOutput, static_cast<uint8_t>(n + 1)}, words[n]);
+  dictionary_.set_outputs(words, written);
   if (written != 0) unit_.take_output(now, words, written);
 }
 
@@ -165,8 +164,8 @@ void TransmitPdo::on_remote(Time now) {
 }
 
 // One that waits is sent with what the words are then.
-void TransmitPdo::inputs_changed(Time now) {
-  if (sends_on_change() && sample(now) != last_) trigger(now);
+void TransmitPdo::inputs_changed(Time now, const Words& words) {
+  if (sends_on_change() && pack(mapping_, words) != last_) trigger(now);
 }
 
 void TransmitPdo::trigger(Time now) {

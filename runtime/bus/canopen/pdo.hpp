@@ -66,12 +66,13 @@ class TransmitPdo final : private Timer::Owner {
 
   void on_sync(Time now);
   void on_remote(Time now);  // a remote frame with its identifier
-  void inputs_changed(Time now);
+  void inputs_changed(Time now, const Words& words);
   // It is sent when one of these words changes, PI1 in bit 0, and does not wait for that already.
   bool follows(uint16_t words) const { return (words_ & words) != 0 && sends_on_change(); }
 
- private:
   bool sends_on_change() const { return runs_ && id_ && pdo_types::is_event(type_) && !waits_; }
+
+ private:
   void on_timer(Time now, uint32_t kind) override;
   PdoData sample(Time now) { return pack(mapping_, unit_.input(now)); }
   void trigger(Time now);
