@@ -21,6 +21,7 @@ constexpr VerbRow kVerbs[] = {
     IPOS_VERB("Run and test", test, test),
     IPOS_VERB("Run and test", campaign, campaign),
     IPOS_VERB("Run and test", debug, debug),
+    IPOS_VERB("Run and test", trace, run),
     IPOS_VERB("Run and test", fmu, fmu),
     IPOS_VERB("Write programs", build, build),
     IPOS_VERB("Write programs", fmt, build),

@@ -73,6 +73,8 @@ const std::map<std::string, std::vector<Sample>>& samples() {
          {"out.csv", "out.xml", "out.html"}},
         {{"campaign", "merge", "done", "--csv", "-"}, {"done/shard-1-of-1.jsonl"}}}},
       {"campaign show", {{{"campaign", "show", "c.campaign.toml", "@case"}, {"c.campaign.toml", "plant.toml", "A.IPC", "own.h"}}}},
+      {"trace export", {{{"trace", "export", "u.ipos-trace", "-o", "out.csv"}, {"u.ipos-trace"}, {"out.csv"}},
+                        {{"trace", "export", "u.ipos-trace"}, {"u.ipos-trace"}}}},
       {"fmu", {{{"fmu", "plant.toml", "-o", "out.fmu"}, {"plant.toml", "A.IPC", "own.h"}, {"out.fmu"}}}},
       {"bus plan", {{{"bus", "plan", "plant.toml"}, {"plant.toml", "A.IPC", "own.h", "u.nv"}}}},
       {"bus decode",
@@ -198,6 +200,7 @@ class Sweep : public ::testing::Test {
     ASSERT_EQ(run_ipos({"build", "A.IPC"}, f.path()).exit_code, 0);
     ASSERT_EQ(run_ipos({"param", "save", "plant.toml", "u.settings"}, f.path()).exit_code, 0);
     ASSERT_EQ(run_ipos({"param", "set", "plant.toml", "P130=1.5s"}, f.path()).exit_code, 0);
+    ASSERT_EQ(run_ipos({"run", "plant.toml", "--for", "10ms", "--trace", "u.ipos-trace"}, f.path()).exit_code, 0);
     ASSERT_EQ(run_ipos({"campaign", "run", "c.campaign.toml", "--out", "done", "--jobs", "1"}, f.path()).exit_code, 0);
     const std::string rows = read_text(f.path() / "done/shard-1-of-1.jsonl"), begin = "{\"case\":\"";
     ASSERT_TRUE(rows.starts_with(begin));

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "tests/tools/command.hpp"
+#include "tests/tools/hand_made.hpp"
 
 namespace ipos::tools {
 namespace {
@@ -37,29 +38,6 @@ TEST(TraceCsv, UnsignedParametersStayPositive) {
   recording.times = {1'000'000};
   recording.samples = {{3'999'999'999}};
   EXPECT_EQ(csv(recording), "time_ms,u.P221\n1,3999999999\n");
-}
-
-// Two stations, a bit field, numbers at the ends of their ranges, frames before, at and behind samples.
-Recording hand_made() {
-  Recording recording;
-  recording.signals = {{"u.speed", "rpm", 0.001, 3, false, "u"},
-                       {"v 1.a.b", "", 1, 0, false, "v 1"},
-                       {"u.status", "", 1, 0, true, "u", 16},
-                       {"u.P221", "", 1, 0, false, "u"},
-                       {"v 1.P094", "", 1, 0, false, "v 1", 32}};
-  recording.times = {1'000'000, 2'000'000, 3'000'000};
-  recording.samples = {{-1, -1, 1'500'000},
-                       {-2'147'483'648, 2'147'483'647, -1},
-                       {0x102, 0x102, 0x8006},
-                       {3'999'999'999, 3'999'999'999, 0},
-                       {0, 0xFFFFFFFF, 0}};
-  recording.events = {{2'000'000, "u: \"F28\"", true}};
-  recording.tracks = {{"sbus1", true}, {"line1", false}};
-  recording.frames = {{123'456, 0, 0x40A, false, false, {0x80, 0x06}, "40A#8006"},
-                      {2'000'000, 1, 0, false, false, {2, 1, 5}, "request to 1"},
-                      {2'000'000, 0, 0x1FFFFFFF, true, true, {}, "1FFFFFFF#R"},
-                      {3'000'001, 0, 1, false, false, {}, "001#"}};
-  return recording;
 }
 
 TEST(TraceCsv, FramesOfTheMillisecond) {
@@ -201,7 +179,7 @@ TEST(TraceVerb, FramesAreThoseOfTheLog) {
   EXPECT_EQ(count(tests::read_text(path + "a.csv"), "#"), frames);
   const tests::CommandResult wrong = tests::run_ipos({"run", plant, "--trace", path + "a.txt"});
   EXPECT_EQ(wrong.exit_code, 64);
-  EXPECT_NE(wrong.err.find("the name must end in .csv, .vcd or .jsonl"), std::string::npos) << wrong.err;
+  EXPECT_NE(wrong.err.find("the name must end in .csv, .vcd, .jsonl or .ipos-trace"), std::string::npos) << wrong.err;
   const tests::CommandResult unknown =
       tests::run_ipos({"run", plant, "--trace", path + "a.csv", "--signals", "sbus9.frames"});
   EXPECT_EQ(unknown.exit_code, 64);

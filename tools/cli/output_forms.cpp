@@ -15,7 +15,8 @@ namespace ipos::tools {
 namespace {
 
 constexpr std::string_view kPlot[] = {".svg", ".html", ".htm"};
-constexpr std::string_view kTrace[] = {".csv", ".vcd", ".jsonl"};
+constexpr std::string_view kTrace[] = {".csv", ".vcd", ".jsonl", ".ipos-trace"};
+constexpr std::string_view kExport[] = {".csv", ".vcd", ".jsonl", ".svg", ".html", ".htm"};
 constexpr std::string_view kLog[] = {".log", ".txt", ".candump", ".pcapng", ".asc", ".trc"};
 constexpr std::string_view kSerialLog[] = {".log", ".slog", ".txt"};
 constexpr std::string_view kCoverage[] = {".info", ".xml", ".txt"};
@@ -29,7 +30,7 @@ constexpr OutputForms kForms[] = {
     {"--plot", kPlot, true},         {"--trace", kTrace, false}, {"--log", kLog, true},
     {"--serial-log", kSerialLog, true}, {"--coverage", kCoverage, false}, {"--junit", kJunit, true},
     {"--tap", kTap, true},           {"--json", kJson, true},    {"--html", kHtml, true},
-    {"scope -o", kCsv, true},
+    {"scope -o", kCsv, true},        {"trace export -o", kExport, false},
 };
 
 }  // namespace

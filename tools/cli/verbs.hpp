@@ -30,6 +30,7 @@ void add_dap(cli::Verb& program);
 void add_completion(cli::Verb& program);
 void add_complete(cli::Verb& program);
 void add_man(cli::Verb& program);
+void add_trace(cli::Verb& program);
 void add_serve(cli::Verb& program);
 void add_new(cli::Verb& program);
 

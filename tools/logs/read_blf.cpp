@@ -9,7 +9,7 @@
 #include "tools/logs/bytes.hpp"
 #include "tools/logs/fields.hpp"
 #include "tools/logs/log_forms.hpp"
-#include "tools/logs/unpack.hpp"
+#include "tools/packing/unpack.hpp"
 
 namespace ipos::tools {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "tools/cli/files.hpp"
 #include "tools/logs/log_forms.hpp"
-#include "tools/logs/unpack.hpp"
+#include "tools/packing/unpack.hpp"
 
 namespace ipos::tools {
 

@@ -36,6 +36,12 @@ json changes_of(const Signal& signal, const std::vector<int64_t>& samples) {
 }  // namespace
 
 std::string plot_html(const Recording& recording, const std::string& title) {
+  std::vector<json> channels;
+  for (const Signal& signal : recording.signals) channels.push_back(channel_json(signal));
+  return plot_html_of(recording, channels, title);
+}
+
+std::string plot_html_of(const Recording& recording, const std::vector<json>& channels, const std::string& title) {
   json data;
   data["title"] = title;
   data["begin"] = recording.times.empty() ? 1 : milliseconds(recording.times.front());
@@ -44,7 +50,7 @@ std::string plot_html(const Recording& recording, const std::string& title) {
   data["signals"] = json::array();
   for (size_t n = 0; n < recording.signals.size(); ++n) {
     const Signal& signal = recording.signals[n];
-    json row = channel_json(signal);
+    json row = channels[n];
     row["status"] = signal.is_status;
     row["binary"] = is_binary(recording, n);
     row["changes"] = changes_of(signal, recording.samples[n]);

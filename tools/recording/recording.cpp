@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <iterator>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "runtime/station/bus.hpp"
@@ -61,11 +62,14 @@ class Recorder::Decided final : public runtime::DriveWatcher {
 
   // What others have written since the last tick is in no tick yet.
   void sample(runtime::Time now) {
-    if (!station_.behind()) on_decided(station_.drive().state(), now);
+    if (station_.behind()) return;
+    const runtime::Drive& drive = std::as_const(station_).drive().state();
+    if (drive.changes() != changes_) on_decided(drive, now);
   }
 
   void on_decided(const runtime::Drive& drive, runtime::Time tick) override {
     for (const Value& value : values_) value.course->note(tick, value.read(drive));
+    changes_ = drive.changes();
     if (watched_) state_.note(tick, state_of(drive));
   }
 
@@ -85,6 +89,7 @@ class Recorder::Decided final : public runtime::DriveWatcher {
 
   Station& station_;
   std::vector<Value> values_;
+  uint32_t changes_ = 0;  // Drive::changes() by then
   bool watched_ = false;
   Course state_;
   std::string told_;
@@ -92,11 +97,37 @@ class Recorder::Decided final : public runtime::DriveWatcher {
 
 RecordedPart part_of(const Recording& recording) {
   RecordedPart part{recording.times, {}, recording.events, recording.frames};
-  for (size_t row = 0; row < recording.times.size(); ++row)
-    for (size_t n = 0; n < recording.signals.size(); ++n)
+  for (size_t n = 0; n < recording.signals.size(); ++n)
+    for (size_t row = 0; row < recording.times.size(); ++row)
       if (const auto& samples = recording.samples[n]; row == 0 || samples[row] != samples[row - 1])
         part.changes.push_back({row, n, samples[row]});
   return part;
+}
+
+void add_part(Recording& all, const RecordedPart& part) {
+  const size_t before = all.times.size(), after = before + part.times.size();
+  auto change = part.changes.begin();
+  for (size_t n = 0; n < all.samples.size(); ++n) {
+    std::vector<int64_t>& samples = all.samples[n];
+    int64_t sample = samples.empty() ? 0 : samples.back();
+    for (; change != part.changes.end() && change->signal == n; ++change) {
+      samples.resize(before + change->row, sample);
+      sample = change->sample;
+    }
+    samples.resize(after, sample);
+  }
+  all.times.insert(all.times.end(), part.times.begin(), part.times.end());
+  all.events.insert(all.events.end(), part.events.begin(), part.events.end());
+  all.frames.insert(all.frames.end(), part.frames.begin(), part.frames.end());
+}
+
+const std::vector<Change>& ByRow::of(const RecordedPart& part) {
+  places_.assign(part.times.size() + 1, 0);
+  for (const Change& change : part.changes) ++places_[change.row + 1];
+  std::partial_sum(places_.begin(), places_.end(), places_.begin());
+  changes_.resize(part.changes.size());
+  for (const Change& change : part.changes) changes_[places_[change.row]++] = change;
+  return changes_;
 }
 
 bool is_binary(const Recording& recording, size_t number) {
@@ -214,45 +245,42 @@ void Recorder::gather(bool all) {
   if (!part.times.empty()) take_events(part);
   take_frames(part, all);
   if (reader_ != nullptr) reader_->take(part);
-  if (keeps_) keep(part);
+  if (keeps_) add_part(recording_, part);
 }
 
 // Of all points that fall into one row the last one counts.
 template <typename Take>
 void Recorder::take_points(Course& course, const std::vector<runtime::Time>& rows, Take take) {
-  size_t n = 0;
-  const auto in_rows = [&](size_t point) {
-    return point < course.points.size() && course.points[point].time <= rows.back();
-  };
-  while (in_rows(n)) {
-    const size_t row = row_of(rows, course.points[n].time);
-    while (in_rows(n + 1) && course.points[n + 1].time <= rows[row]) ++n;
-    take(row, course.points[n++].sample);
+  size_t n = 0, row = 0;
+  const std::span<const Point> points = course.points;
+  const runtime::Time last = rows.back();
+  while (n < points.size() && points[n].time <= last) {
+    if (rows[row] != points[n].time) row = row_of(rows, points[n].time);
+    while (n + 1 < points.size() && points[n + 1].time <= rows[row]) ++n;
+    take(row, points[n++].sample);
+    if (row + 1 < rows.size()) ++row;  // what moves has another value in each
   }
   course.points.erase(course.points.begin(), course.points.begin() + static_cast<std::ptrdiff_t>(n));
 }
 
-// Signal by signal, and then in order of the rows.
 void Recorder::take_changes(RecordedPart& part) {
-  std::vector<Change>& by_signal = by_signal_;
-  by_signal.clear();
-  std::vector<size_t> places(part.times.size() + 1);  // of the changes of a row, from the row after it on
+  size_t most = courses_.size();
+  for (const Course& course : courses_) most += course.points.size();
+  part.changes.resize(most);
+  Change* change = part.changes.data();
   for (size_t n = 0; n < courses_.size(); ++n) {
     Course& course = courses_[n];
     const auto add = [&](size_t row, int64_t sample) {
-      if (!begun_ && row == 0) by_signal.pop_back();
+      if (!begun_ && row == 0) --change;
       if (sample == course.known && (begun_ || row != 0)) return;
       course.known = sample;
-      by_signal.push_back({row, n, sample});
+      *change++ = {row, n, sample};
     };
-    if (!begun_) by_signal.push_back({0, n, course.known});
+    if (!begun_) *change++ = {0, n, course.known};
     take_points(course, part.times, add);
   }
+  part.changes.resize(static_cast<size_t>(change - part.changes.data()));
   begun_ = true;
-  for (const Change& change : by_signal) ++places[change.row + 1];
-  std::partial_sum(places.begin(), places.end(), places.begin());
-  part.changes.resize(by_signal.size());
-  for (const Change& change : by_signal) part.changes[places[change.row]++] = change;
 }
 
 void Recorder::take_events(RecordedPart& part) {
@@ -276,19 +304,6 @@ void Recorder::take_frames(RecordedPart& part, bool all) {
                                 [&](const RecordedFrame& frame) { return !all && frame.time > last; });
   part.frames.assign(std::make_move_iterator(frames_.begin()), std::make_move_iterator(end));
   frames_.erase(frames_.begin(), end);
-}
-
-void Recorder::keep(const RecordedPart& part) {
-  Recording& all = recording_;
-  auto change = part.changes.begin();
-  for (size_t row = 0; row < part.times.size(); ++row) {
-    for (std::vector<int64_t>& samples : all.samples) samples.push_back(samples.empty() ? 0 : samples.back());
-    for (; change != part.changes.end() && change->row == row; ++change)
-      all.samples[change->signal].back() = change->sample;
-  }
-  all.times.insert(all.times.end(), part.times.begin(), part.times.end());
-  all.events.insert(all.events.end(), part.events.begin(), part.events.end());
-  all.frames.insert(all.frames.end(), part.frames.begin(), part.frames.end());
 }
 
 }  // namespace ipos::tools

@@ -46,9 +46,19 @@ struct Change {
 // Rows, and what happened since those of the part before. The last part may have no rows.
 struct RecordedPart {
   std::vector<runtime::Time> times;   // of the rows
-  std::vector<Change> changes;        // by row, then signal; the first row of all has every signal
+  std::vector<Change> changes;        // by signal, then row; the first row of all has every signal
   std::vector<RecordedEvent> events;  // in order of time
   std::vector<RecordedFrame> frames;  // in order of time
+};
+
+// The changes of a part by row, then signal, as texts want them. It keeps its memory from part to part.
+class ByRow {
+ public:
+  const std::vector<Change>& of(const RecordedPart& part);
+
+ private:
+  std::vector<Change> changes_;
+  std::vector<size_t> places_;  // of the changes of a row, from the row after it on
 };
 
 class PartReader {
@@ -66,8 +76,9 @@ struct Recording {
   std::vector<RecordedFrame> frames;  // of the tracks, in order of time
 };
 
-// The whole as one part.
+// The whole as one part; and one part more.
 RecordedPart part_of(const Recording& recording);
+void add_part(Recording& recording, const RecordedPart& part);
 
 // On or off: a plot shows it as a strip. Also a plain number that was only 0 and 1.
 bool is_binary(const Recording& recording, size_t signal);
@@ -126,7 +137,6 @@ class Recorder final : private runtime::BusObserver {
   void take_changes(RecordedPart& part);
   void take_events(RecordedPart& part);
   void take_frames(RecordedPart& part, bool all);
-  void keep(const RecordedPart& part);
   void on_message(const runtime::Bus& bus, const runtime::BusMessage& message) override;
 
   runtime::Plant& plant_;
@@ -140,9 +150,7 @@ class Recorder final : private runtime::BusObserver {
   std::vector<std::unique_ptr<Decided>> decided_;
   std::vector<Decided*> watched_;      // whose conditions make events
   std::vector<RecordedFrame> frames_;  // of the next part, in order of time
-  // Kept from part to part, so that their memory is.
-  RecordedPart part_;
-  std::vector<Change> by_signal_;
+  RecordedPart part_;                  // kept from part to part, so that its memory is
 };
 
 }  // namespace ipos::tools

@@ -1,4 +1,4 @@
-// A recording as text for other tools, written as it comes. docs/guide/recording.md describes the forms.
+// A recording as a file for other tools, written as it comes. docs/guide/recording.md describes the forms.
 #pragma once
 
 #include <memory>
@@ -12,6 +12,7 @@ namespace ipos::tools {
 // What it was made with must outlive it.
 class TraceWriter : public PartReader {
  public:
+  virtual void flush() {}   // what was taken is to be in the stream
   virtual void finish() {}  // after the last part
 };
 

@@ -32,11 +32,12 @@ class CsvTrace final : public TraceWriter {
   }
 
   void take(const RecordedPart& part) override {
-    auto change = part.changes.begin();
+    const std::vector<Change>& changes = by_row_.of(part);
+    auto change = changes.begin();
     auto frame = part.frames.begin();
     for (size_t row = 0; row < part.times.size(); ++row) {
       const auto first = change;
-      for (; change != part.changes.end() && change->row == row; ++change) {
+      for (; change != changes.end() && change->row == row; ++change) {
         cells_[change->signal].clear();
         signals_[change->signal].append_text(cells_[change->signal], change->sample);
       }
@@ -81,6 +82,7 @@ class CsvTrace final : public TraceWriter {
   bool has_frames_ = false;          // there are some in this row
   std::string row_;                  // after the time
   std::string text_;                 // of this part
+  ByRow by_row_;
 };
 
 }  // namespace

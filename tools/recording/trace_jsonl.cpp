@@ -46,7 +46,8 @@ class JsonlTrace final : public TraceWriter {
   }
 
   void take(const RecordedPart& part) override {
-    auto change = part.changes.begin();
+    const std::vector<Change>& changes = by_row_.of(part);
+    auto change = changes.begin();
     auto frame = part.frames.begin();
     auto event = part.events.begin();
     const auto write_until = [&](runtime::Time time) {
@@ -58,9 +59,9 @@ class JsonlTrace final : public TraceWriter {
     };
     for (size_t row = 0; row < part.times.size(); ++row) {
       write_until(part.times[row]);
-      if (change == part.changes.end() || change->row != row) continue;
+      if (change == changes.end() || change->row != row) continue;
       const std::string begin = "{\"time_ms\":" + time_text(part.times[row]);
-      for (; change != part.changes.end() && change->row == row; ++change) {
+      for (; change != changes.end() && change->row == row; ++change) {
         text_.append(begin).append(middles_[change->signal]);
         signals_[change->signal].append_text(text_, change->sample);
         text_ += "}\n";
@@ -81,6 +82,7 @@ class JsonlTrace final : public TraceWriter {
   const std::vector<FrameTrack>& tracks_;
   std::vector<std::string> middles_;  // of the lines, as the signals
   std::string text_;                  // of this part
+  ByRow by_row_;
 };
 
 }  // namespace

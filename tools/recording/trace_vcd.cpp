@@ -75,10 +75,11 @@ class VcdTrace final : public TraceWriter {
 
   void take(const RecordedPart& part) override {
     auto frame = part.frames.begin();
-    auto change = part.changes.begin();
+    const std::vector<Change>& changes = by_row_.of(part);
+    auto change = changes.begin();
     for (size_t row = 0; row < part.times.size(); ++row) {
       for (; frame != part.frames.end() && frame->time <= part.times[row]; ++frame) add(*frame);
-      for (; change != part.changes.end() && change->row == row; ++change) {
+      for (; change != changes.end() && change->row == row; ++change) {
         at(part.times[row]);
         add(*change);
       }
@@ -231,6 +232,7 @@ class VcdTrace final : public TraceWriter {
   std::vector<Line> lines_;      // as the tracks
   TemporaryFile body_;
   std::string text_;     // of this part
+  ByRow by_row_;
   std::string unknown_;  // before the first sample
   runtime::Time now_ = 0;
   runtime::Time last_ = 0;  // row

@@ -33,6 +33,7 @@
 #include "tools/recording/plot_svg.hpp"
 #include "tools/recording/recording.hpp"
 #include "tools/recording/trace.hpp"
+#include "tools/recording/trace_forms.hpp"
 #include "tools/run/signal_list.hpp"
 #include "tools/running/real_time_run.hpp"
 #include "tools/running/run_report.hpp"
@@ -155,7 +156,10 @@ class TraceFile {
     writer_ = form(file_.stream(), recorder->signals(), recorder->tracks());
     recorder->give_to(*writer_, plots);
   }
-  void flush() { file_.flush(); }
+  void flush() {
+    if (writer_) writer_->flush();
+    file_.flush();
+  }
   // After Recorder::finish().
   void finish() {
     if (writer_) writer_->finish();
@@ -241,12 +245,6 @@ Time hash_step(const std::string& text) {
   return step;
 }
 
-// By the ending of the file's name.
-TraceForm trace_form(const std::string& path) {
-  const std::string ending = output_ending("--trace", path);
-  return ending == ".vcd" ? vcd_trace : ending == ".jsonl" ? jsonl_trace : csv_trace;
-}
-
 using Plotter = std::string (*)(const Recording&, const std::string& title);
 
 // By the ending of the file's name.
@@ -296,7 +294,7 @@ int run(const RunFlags& flags) {
   if (taking > 1) throw Failure(kUsage, "only one file can go to standard output");
   const bool output_taken = taking != 0;
   CoverageReports coverage(flags.coverage, flags.format == "json" || output_taken);
-  const TraceForm form = trace_form(flags.trace);
+  const TraceForm form = trace_form(output_ending("--trace", flags.trace));
   const Plotter plot = plot_of(flags.plot);
   output_ending("--log", flags.log);
   output_ending("--serial-log", flags.serial_log);
@@ -404,7 +402,7 @@ void add_run(cli::Verb& app) {
               "write the telegrams of all RS-485 lines; - is standard output");
   verb.option("--plot", flags->plot,
               "draw signals over time: .svg, or .html with zoom and cursors; - is standard output");
-  verb.option("--trace", flags->trace, "write signals over time: .csv, .vcd or .jsonl");
+  verb.option("--trace", flags->trace, "write signals over time: .csv, .vcd, .jsonl, or .ipos-trace, packed and quick");
   verb.option("--signals", flags->signals,
               "what to plot and trace, for example unit1.speed,unit1.D*,unit1.H500,sbus1.frames; default: "
               "speed, setpoint and status of every station; 'list' prints what there is")

@@ -11,7 +11,9 @@ import { KeepButtons, offerKeepKeys } from "./keep/keep_buttons";
 import { Parameters } from "./parameters/parameters_tab";
 import { PlantTab } from "./plant/plant_tab";
 import { Program } from "./program/program_tab";
+import { takeDrops } from "./picture/drop";
 import { Scope } from "./scope/scope_tab";
+import { openTrace, TraceDialog } from "./scope/trace_dialog";
 import { connect } from "./server/connection";
 import { overSocket } from "./server/socket";
 import { hello, listenToServer } from "./server/live";
@@ -81,6 +83,7 @@ function Page() {
       <Panes views={views} />
       <Timeline />
       <Help />
+      <TraceDialog />
     </>
   );
 }
@@ -92,5 +95,6 @@ offerTimeKeys();
 offerPageKeys();
 offerToPrograms();
 offerKeepKeys();
+takeDrops(openTrace);
 connect(standsAlone ? inBrowser : overSocket);
 render(<Page />, document.getElementById("page") as HTMLElement);

@@ -1,7 +1,7 @@
 // The scope and its one picture: what is measured and thinned against calculations of our own, channels, lanes, layouts and
 // files before the real server, hands and keys at both sizes, and the page of a plot that stands alone.
 import assert from "node:assert";
-import { execFileSync } from "node:child_process";
+import { execFileSync, spawnSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
@@ -354,5 +354,78 @@ test("the plot of twenty stations: all names, no number cut, colours as in the t
     } finally {
       await opened.close();
     }
+  }
+});
+
+// --- traces that ipos run has written ---
+
+const traced = (form) => spawnSync(program, ["run", join(examples, "isync/isync.toml"), "--for", "1500ms", "--trace", `run.${form}`, "--signals", "*.speed,*.status,*.P302,sbus.frames"], { cwd: folder, stdio: "ignore" });
+
+test("a trace has the values of the run's CSV, and what is damaged is told with its place", { skip }, async () => {
+  for (const form of ["csv", "jsonl", "ipos-trace"]) traced(form);
+  const { readTrace } = await source("trace_file");
+  const bytes = readFileSync(join(folder, "run.ipos-trace"));
+  const file = (content) => content.buffer.slice(content.byteOffset, content.byteOffset + content.length);
+  const trace = await readTrace(file(bytes), "run");
+  const [head, ...rows] = readFileSync(join(folder, "run.csv"), "utf8").trim().split("\n").map((line) => line.split(","));
+  assert.deepStrictEqual(trace.signals.map((signal) => signal.name), head.slice(1, -1).map((name) => name.replace(/ \[.*/, "")));
+  assert.strictEqual(trace.begin, 1);
+  assert.strictEqual(trace.end, rows.length);
+  trace.samples.values.forEach((values, n) => {
+    assert.strictEqual(values.length, rows.length);
+    rows.forEach((row, at) => assert.ok(Math.abs(values[at] - Number(row[n + 1])) < 1e-6, `${head[n + 1]} at ${at}`));
+  });
+  const lines = readFileSync(join(folder, "run.jsonl"), "utf8").trim().split("\n").map((line) => JSON.parse(line));
+  assert.deepStrictEqual(trace.events.map(({ time, text }) => [time, text]), lines.filter((line) => line.event).map((line) => [line.time_ms, line.event]));
+  assert.strictEqual(trace.tracks[0].times.length, lines.filter((line) => line.frame).length);
+  const early = await readTrace(file(bytes.subarray(0, bytes.length - 20)), "run");
+  assert.match(early.title, /ends early/);
+  assert.ok(early.end > 0 && early.end < trace.end);
+  for (let at = 0; at < bytes.length; at += 31) {
+    const bad = Buffer.from(bytes);
+    bad[at] ^= 0x10;
+    const read = await readTrace(file(bad), "run").catch((reason) => reason);
+    if (read instanceof Error) assert.ok(Number(read.message.match(/^byte (\d+): /)[1]) <= at, read.message);
+    else assert.match(read.title, /ends early/);
+  }
+});
+
+test("a trace is opened in the scope, dropped on the page, and dropped on the page of a plot", { skip }, async () => {
+  traced("ipos-trace");
+  const path = join(folder, "run.ipos-trace");
+  const drop = async (page) => {
+    const data = await page.evaluateHandle((base64) => {
+      const transfer = new DataTransfer();
+      transfer.items.add(new File([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], "run.ipos-trace"));
+      return transfer;
+    }, readFileSync(path).toString("base64"));
+    await page.dispatchEvent("body", "drop", { dataTransfer: data });
+  };
+  await meet(`${examples}/hoist/hoist.toml`, 0, async (page) => {
+    const dialog = page.getByRole("dialog", { name: "Trace" });
+    await page.getByLabel("Open trace").setInputFiles(path);
+    await dialog.getByRole("heading", { name: "run.ipos-trace" }).waitFor();
+    await until(async () => (await dialog.locator(".picture .uplot canvas").count()) > 0, "no curves");
+    assert.ok((await dialog.getByRole("table", { name: "Readings" }).locator("tbody th").allTextContents()).some((name) => name.includes("speed")));
+    await page.evaluate(axe);
+    assert.deepStrictEqual(await findings(page), []);
+    await dialog.getByRole("button", { name: "Close" }).click();
+    await dialog.waitFor({ state: "detached" });
+    await drop(page);
+    await dialog.waitFor();
+    await page.keyboard.press("Escape");
+    await dialog.waitFor({ state: "detached" });
+    writeFileSync(join(folder, "bad.ipos-trace"), "no trace");
+    await page.getByLabel("Open trace").setInputFiles(join(folder, "bad.ipos-trace"));
+    await page.getByRole("alert").filter({ hasText: "bad.ipos-trace: byte 0: this is no .ipos-trace" }).waitFor();
+  });
+  spawnSync(program, ["run", `${examples}/hoist/hoist.toml`, "--for", "20ms", "--plot", "small.html"], { cwd: folder, stdio: "ignore" });
+  const opened = await openPage(browser, `file://${join(folder, "small.html")}`);
+  try {
+    await drop(opened.page);
+    await opened.page.getByRole("heading", { name: "run.ipos-trace" }).waitFor();
+    assert.deepStrictEqual(opened.errors, []);
+  } finally {
+    await opened.close();
   }
 });

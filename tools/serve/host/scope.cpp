@@ -508,12 +508,11 @@ Json Scope::csv(const Router::Call& call) {
   for (;;) {
     const uint64_t stop = std::min(end, begin + kRowsAtOnce);
     RecordedPart part;
-    for (uint64_t n = begin; n < stop; ++n) {
-      part.times.push_back(us_of(n) * runtime::kMicrosecond);
-      for (size_t channel = 0; channel < channels_.size(); ++channel)
+    for (uint64_t n = begin; n < stop; ++n) part.times.push_back(us_of(n) * runtime::kMicrosecond);
+    for (size_t channel = 0; channel < channels_.size(); ++channel)
+      for (uint64_t n = begin; n < stop; ++n)
         if (const auto sample = memory_.at(channel, n); sample && sample != std::exchange(last[channel], sample))
           part.changes.push_back({static_cast<size_t>(n - begin), channel, *sample});
-    }
     writer->take(part);
     std::string text = std::exchange(out, std::ostringstream()).str();
     if (stop == end) return {{"csv", std::move(text)}};

@@ -1,5 +1,6 @@
 // A folder as one zip file and back: stored or deflated entries, no encryption, no parts, as every system's tools make and
 // read them (APPNOTE.TXT 4.3 of PKWARE has the records).
+import { crc32 } from "../picture/crc";
 import type { Files } from "./stored";
 
 const local_header = 0x04034b50;
@@ -8,18 +9,6 @@ const end_of_directory = 0x06054b50;
 const deflated = 8;
 const names_are_utf8 = 0x0800;
 const day = 0x21; // 1 January 1980: an archive of the same files has the same bytes
-
-const crc_table = Uint32Array.from({ length: 256 }, (_, n) => {
-  let c = n;
-  for (let bit = 0; bit < 8; ++bit) c = c & 1 ? 0xedb88320 ^ (c >>> 1) : c >>> 1;
-  return c;
-});
-
-function crc32(bytes: Uint8Array): number {
-  let crc = ~0;
-  for (const byte of bytes) crc = (crc_table[(crc ^ byte) & 0xff] as number) ^ (crc >>> 8);
-  return ~crc >>> 0;
-}
 
 type Bytes = Uint8Array<ArrayBuffer>;
 

@@ -3,7 +3,14 @@
 import type { ComponentChildren } from "preact";
 import { useLayoutEffect, useRef } from "preact/hooks";
 
-export function Dialog({ name, onClose, children }: { name: string; onClose: () => void; children: ComponentChildren }) {
+interface Shown {
+  name: string;
+  onClose: () => void;
+  wide?: boolean; // as wide as the page
+  children: ComponentChildren;
+}
+
+export function Dialog({ name, onClose, wide, children }: Shown) {
   const dialog = useRef<HTMLDialogElement>(null);
   useLayoutEffect(() => {
     const element = dialog.current;
@@ -11,7 +18,7 @@ export function Dialog({ name, onClose, children }: { name: string; onClose: () 
     return () => element?.close();
   }, []);
   return (
-    <dialog class="help keep" ref={dialog} aria-label={name} onClose={onClose}>
+    <dialog class={wide ? "help keep wide" : "help keep"} ref={dialog} aria-label={name} onClose={onClose}>
       <div class="row">
         <h2>{name}</h2>
         <button class="spread" onClick={() => dialog.current?.close()}>

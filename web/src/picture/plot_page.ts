@@ -1,40 +1,19 @@
 // The page of `ipos run --plot x.html`, of a failed test and of the scope's HTML file: the recording stands in the document,
-// and the picture of the scope shows it. It loads nothing.
+// and the picture of the scope shows it. A `.ipos-trace` that is dropped on it takes its place. It loads nothing.
 import uplotStyle from "uplot/dist/uPlot.min.css";
 
 import coloursStyle from "../style/colours.css";
 import pictureStyle from "../style/picture.css";
-import type { Channel } from "./channel";
-import type { Control, CursorName, Cursors, Mark, Track } from "./control";
-import { Legend } from "./legend";
-import { measure } from "./measure";
-import { Picture } from "./picture";
-import { ms_us, thin, type Samples } from "./points";
+import { takeDrops } from "./drop";
+import { element, Plot, type Recorded, type RecordedChannel } from "./plot";
 import plotStyle from "./plot_page.css";
-import { drawPlane } from "./xy";
+import type { Samples } from "./points";
+import { readTrace } from "./trace_file";
 
-interface Recorded extends Channel {
-  status: boolean;
-  binary: boolean;
-  changes: number[]; // number of the sample, value
-}
-interface Data {
-  title: string;
-  begin: number; // ms of the first sample
-  end: number;
+// As tools/recording/plot_html.cpp writes it.
+interface Data extends Omit<Recorded, "samples" | "signals"> {
   samples: number;
-  signals: Recorded[];
-  events: { time: number; text: string; fault: boolean }[];
-  tracks: { name: string; times: number[] }[];
-}
-
-const shown_around_ms = 500;
-
-function element<Name extends keyof HTMLElementTagNameMap>(name: Name, text = "", parent?: HTMLElement): HTMLElementTagNameMap[Name] {
-  const made = document.createElement(name);
-  made.textContent = text;
-  parent?.append(made);
-  return made;
+  signals: (RecordedChannel & { changes: number[] })[]; // number of the sample, value
 }
 
 function samplesOf(data: Data): Samples {
@@ -52,142 +31,33 @@ function samplesOf(data: Data): Samples {
   return { first_us: data.begin * 1000, values };
 }
 
-class PlotPage implements Control {
-  private readonly whole: { from_us: number; to_us: number };
-  private shown: { from_us: number; to_us: number };
-  private at: Cursors = { A: null, B: null };
-  private chosen: CursorName = "A";
-  private pointer: number | null = null;
-  private readonly samples: Samples;
-  private readonly channels: Channel[];
-  private readonly picture: Picture;
-  private readonly legend: Legend;
-  private readonly plane = document.createElement("canvas");
-  private readonly axes: [HTMLSelectElement, HTMLSelectElement];
+for (const style of [uplotStyle, coloursStyle, pictureStyle, plotStyle]) element("style", style, document.head);
+const place = element("div", "", document.body);
+let plot: Plot;
 
-  constructor(private readonly data: Data) {
-    this.samples = samplesOf(data);
-    this.channels = data.signals.map((signal) => (signal.binary && signal.kind !== "word" ? { ...signal, kind: "level" } : signal));
-    const from_us = data.begin > 1 ? data.begin * 1000 : 0;
-    this.whole = this.shown = { from_us, to_us: Math.max(from_us + ms_us, data.end * 1000) };
-    document.title = data.title;
-    const head = element("header", "", document.body);
-    element("h1", data.title, head);
-    const all = element("button", "All", head);
-    all.title = "The whole recording (Home)";
-    all.addEventListener("click", () => this.all());
-    const xy = element("label", "XY ", head);
-    this.axes = [element("select", "", xy), element("select", "", xy)];
-    this.axes[0].setAttribute("aria-label", "X channel");
-    this.axes[1].setAttribute("aria-label", "Y channel");
-    for (const [n, axis] of this.axes.entries()) {
-      axis.append(new Option(n === 0 ? "against time" : "–", ""), ...this.channels.map((one, at) => new Option(one.name, String(at))));
-      axis.addEventListener("change", () => this.draw());
-    }
-    element("span", "drag or wheel: zoom, right button or finger: move, click: cursor, Shift+click: the other, keys: arrows + - Home", head).className = "quiet";
-    const main = element("main", "", document.body);
-    const root = element("div", "", main);
-    root.className = "picture";
-    main.append(this.plane);
-    const table = element("div", "", main);
-    this.legend = new Legend(table, (name) => this.choose(name));
-    this.picture = new Picture(root, this);
-    this.picture.onPointer = (us) => {
-      this.pointer = us;
-      this.read();
-    };
-    const marks: Mark[] = data.events.map((event) => ({ us: event.time * 1000, text: event.text, colour: event.fault ? "--bad" : "--quiet" }));
-    const tracks: Track[] = data.tracks.map((track) => ({ name: track.name, times_us: track.times.map((time) => time * 1000) }));
-    this.picture.setMarks(marks);
-    this.picture.show(this.channels, [], tracks);
-    this.picture.onWidth = () => requestAnimationFrame(() => this.draw());
-    this.draw();
-    this.goToMoment();
-    addEventListener("hashchange", () => this.goToMoment());
-    document.addEventListener("keydown", (event) => {
-      if (event.defaultPrevented || event.target !== document.body) return;
-      root.dispatchEvent(new KeyboardEvent("keydown", event));
-    });
-  }
-
-  // A report leads to a millisecond by the part behind #.
-  private goToMoment(): void {
-    const ms = Number(location.hash.slice(1));
-    if (!(ms > 0)) return;
-    this.zoomTo((ms - shown_around_ms) * ms_us, (ms + shown_around_ms) * ms_us);
-    this.put("A", ms * ms_us);
-  }
-
-  // --- Control ---
-  window() {
-    return this.shown;
-  }
-  cursors() {
-    return this.at;
-  }
-  active() {
-    return this.chosen;
-  }
-  zoomTo(from_us: number, to_us: number): void {
-    const length = this.whole.to_us - this.whole.from_us;
-    const span = Math.min(length, Math.max(Math.min(length, 5 * ms_us), to_us - from_us));
-    const from = Math.max(this.whole.from_us, Math.min(this.whole.to_us - span, from_us));
-    this.shown = { from_us: from, to_us: from + span };
-    this.draw();
-  }
-  all(): void {
-    this.shown = this.whole;
-    this.draw();
-  }
-  put(name: CursorName, us: number | null): void {
-    const last = this.samples.first_us + (this.data.samples - 1) * ms_us;
-    this.at = { ...this.at, [name]: us === null ? null : Math.max(this.samples.first_us, Math.min(last, Math.round(us / ms_us) * ms_us)) };
-    this.chosen = name;
-    this.picture.redraw();
-    this.read();
-  }
-  private choose(name: CursorName): void {
-    const { from_us, to_us } = this.shown;
-    if (this.chosen === name || this.at[name] === null) this.put(name, this.at[name] === null ? from_us + (to_us - from_us) * (name === "A" ? 0.4 : 0.6) : null);
-    this.chosen = name;
-    this.read();
-  }
-
-  // --- showing ---
-  private draw(): void {
-    const words = this.channels.map((channel) => channel.kind === "word");
-    const most = Math.max(200, Math.min(4096, document.body.clientWidth));
-    this.picture.setPoints(thin(this.samples, words, this.shown.from_us, this.shown.to_us, most));
-    const [x, y] = this.axes.map((axis) => (axis.value === "" ? -1 : Number(axis.value))) as [number, number];
-    this.plane.hidden = x < 0 || y < 0;
-    if (!this.plane.hidden)
-      drawPlane(this.plane, Math.min(760, document.body.clientWidth - 24), 420, {
-        x: this.channels[x] as Channel, y: this.channels[y] as Channel,
-        xs: this.part(x, this.shown.from_us, this.shown.to_us), ys: this.part(y, this.shown.from_us, this.shown.to_us),
-      });
-    this.read();
-  }
-  private index(us: number): number {
-    return Math.round((us - this.samples.first_us) / ms_us);
-  }
-  private part(channel: number, from_us: number, to_us: number): Float64Array {
-    return (this.samples.values[channel] as Float64Array).subarray(Math.max(0, this.index(from_us)), this.index(to_us) + 1);
-  }
-  private valuesAt(us: number | null): (number | null)[] | null {
-    return us === null ? null : this.samples.values.map((values) => values[this.index(us)] ?? null);
-  }
-  private read(): void {
-    const { A, B } = this.at;
-    const between = A !== null && B !== null ? ([Math.min(A, B), Math.max(A, B)] as const) : null;
-    this.legend.show(this.channels, {
-      pointer_us: this.pointer,
-      cursors: this.at,
-      active: this.chosen,
-      at: { pointer: this.valuesAt(this.pointer), A: this.valuesAt(A), B: this.valuesAt(B) },
-      measures: between && this.channels.map((_, n) => measure(this.part(n, between[0], between[1]))),
-    });
-  }
+function show(recorded: Recorded): void {
+  place.replaceChildren();
+  document.title = recorded.title;
+  plot = new Plot(recorded, place);
 }
 
-for (const style of [uplotStyle, coloursStyle, pictureStyle, plotStyle]) element("style", style, document.head);
-new PlotPage(JSON.parse(document.getElementById("data")?.textContent ?? "") as Data);
+// A report leads to a millisecond by the part behind #.
+function goToMoment(): void {
+  const ms = Number(location.hash.slice(1));
+  if (ms > 0) plot.goTo(ms);
+}
+
+const data = JSON.parse(document.getElementById("data")?.textContent ?? "") as Data;
+show({ ...data, samples: samplesOf(data) });
+goToMoment();
+addEventListener("hashchange", goToMoment);
+document.addEventListener("keydown", (event) => {
+  if (!event.defaultPrevented && event.target === document.body) plot.key(event);
+});
+takeDrops(async (file) => {
+  try {
+    show(await readTrace(await file.arrayBuffer(), file.name));
+  } catch (reason) {
+    alert(`${file.name}: ${reason instanceof Error ? reason.message : String(reason)}`);
+  }
+});

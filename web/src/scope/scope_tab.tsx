@@ -11,6 +11,7 @@ import { pictureFile, pointer, ScopePicture } from "./picture";
 import { Plane, PlaneForm } from "./plane";
 import { Readings } from "./readings";
 import { csv, followScope, pictureText } from "./recording";
+import { OpenTrace } from "./trace_dialog";
 import { TriggerForm } from "./trigger_form";
 import { follow, moveBy, moveCursor, putCursor, scope, shownWindow, zoomBy, zoomed, type Window } from "./window";
 
@@ -124,6 +125,7 @@ function Buttons() {
       <button title="What the picture shows, as a page that stands alone" onClick={() => void saveDrawing("html")}>
         HTML
       </button>
+      <OpenTrace />
     </div>
   );
 }

@@ -1,5 +1,5 @@
 // By zlib.
-#include "tools/logs/unpack.hpp"
+#include "tools/packing/unpack.hpp"
 
 #include <zlib.h>
 
@@ -27,11 +27,13 @@ class Inflate {
 
 }  // namespace
 
+bool has_zlib() { return true; }
+
 Unpacked unpack(std::string_view packed, Packing packing, const std::function<bool(std::string_view)>& take) {
   Inflate unpacking(packing);
   if (!unpacking.ready()) return Unpacked::Damaged;
   z_stream& stream = unpacking.stream();
-  // zlib does not write to its input; a log is at most kLogLimit long.
+  // zlib does not write to its input; files are at most kLogLimit long.
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
   stream.avail_in = static_cast<uInt>(packed.size());
   std::array<char, 65536> piece{};
