@@ -9,7 +9,9 @@
 namespace ipos::tests {
 namespace {
 
-std::string once(const Compilation& made) {
+using compiler::test::compile_text;
+
+std::string once(const compiler::Compilation& made) {
   return compiler::render_text(compiler::each_once(made.diagnostics.all(), *made.sources), *made.sources, false);
 }
 
@@ -24,7 +26,7 @@ TEST(EachOnce, OfAHeaderThatIsIncludedTwice) {
 }
 
 TEST(EachOnce, OfAMacroThatIsUsedAgain) {
-  const Compilation made = compile_text(
+  const compiler::Compilation made = compile_text(
       "#define BIG (100000 * 65536)\nlong a;\nmain() {\n  a = BIG;\n  H1 = a;\n  a = BIG;\n  H2 = a;\n  a = BIG;\n  H3 = a; }\n");
   ASSERT_EQ(made.diagnostics.all().size(), 3U);
   const std::string text = once(made);
@@ -34,7 +36,7 @@ TEST(EachOnce, OfAMacroThatIsUsedAgain) {
 }
 
 TEST(EachOnce, LeavesWhatIsWrittenTwice) {
-  const Compilation made = compile_text("long a;\nmain() {\n  a = 100000 * 65536; H1 = a;\n  a = 100000 * 65536; H1 = a; }\n");
+  const compiler::Compilation made = compile_text("long a;\nmain() {\n  a = 100000 * 65536; H1 = a;\n  a = 100000 * 65536; H1 = a; }\n");
   ASSERT_EQ(made.diagnostics.all().size(), 2U);
   EXPECT_EQ(compiler::each_once(made.diagnostics.all(), *made.sources).size(), 2U);
   EXPECT_EQ(once(made).find("the same"), std::string::npos);

@@ -218,7 +218,7 @@ TEST(Writers, OfOneVariable) {
       << "one task, one after the other";
   EXPECT_EQ(said("long n; main() { _SetTask2(1, t); _SetTask2(1, u); n = 3; } t() { n = 1; } u() { n = 2; }"),
             "'n' is written by 'main', 't' and 'u'\n");
-  EXPECT_EQ(said("long n; main() { _SetTask2(1, t); _SetTask(1, t); } t() { n = 1; }"),
+  EXPECT_EQ(said("#include <constb.h>\nlong n; main() { _SetTask2(1, t); _SetTask(1, t); } t() { n = 1; }"),
             "'n' is written by task 2 't' and task 3 't'\n");
   EXPECT_EQ(said("#include <constb.h>\nVARINT v; main() { v.Mode = 1; v.Priority = 1; _SetTask2(1, t); } t() { _SetVarInterrupt(v, u); } u() { }"), "")
       << "of what it takes orders from, a command writes the result alone";

@@ -56,10 +56,11 @@ TEST(PlantObjects, ThatMayHaveAPartner) {
   EXPECT_EQ(told(sender("1100"), receiver("1090 + H5")), "");
   // A master control may take it.
   EXPECT_EQ(told(sender("1100"), "main() { while (1) H0++; }\n",
-                 "[[control]]\nname = \"plc\"\nsbus = \"sbus\"\ncycle = \"10ms\"\n[[control.target]]\naddress = 1\n"),
-            "");
+                 "[[control]]\nname = \"plc\"\nsbus = \"sbus\"\ncycle = \"10ms\"\n[[control.target]]\naddress = 1\nevery = \"10ms\"\n")
+                .find("[B"),
+            std::string::npos);
   // 8 * 3 + 3 is the PO of address 3 (1053 1610 p. 38), which somebody may get later.
-  EXPECT_EQ(told("main() { while (1) H0++; }\n", sender("27")), "");
+  EXPECT_EQ(told("main() { while (1) H0++; }\n", sender("27")).find("[B"), std::string::npos);
 }
 
 TEST(PlantObjects, AreHintsOfThePlan) {

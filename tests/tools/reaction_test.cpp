@@ -77,7 +77,7 @@ TEST(Reaction, IsNeverBelowWhatRunsShow) {
     std::string stimuli;
     std::vector<double> moments;
     double at = 200;
-    for (int n = 0; n < 400; ++n) {
+    for (int n = 0; n < 1000; ++n) {
       at += worst + 5 + std::uniform_real_distribution<>(0, 100)(random);
       at = std::round(at * 1000) / 1000;
       moments.push_back(at);
@@ -114,9 +114,9 @@ std::string with(std::string text, const std::string& old, const std::string& no
 
 TEST(Reaction, SaysWhyNothingBoundsIt) {
   const std::string a = leader({}), b = follower({});
-  EXPECT_EQ(because(a, with(b, "    if (lData)", "    _Wait(H5);\n    if (lData)")), "task 1 of follower: waits at line 11");
-  EXPECT_EQ(because(with(a, "    if (DI02)", "    while (!DI03) { }\n    if (DI02)"), b),
-            "task 1 of leader: nothing tells how often the loop at line 13 goes round");
+  EXPECT_EQ(because(a, with(b, "    if (lData)", "    _Wait(H5);\n    if (lData)")), "task 1 of follower: waits at line 13");
+  EXPECT_EQ(because(with(a, "    if (DI02)", "    H102++;\n    while (!DI03) { }\n    if (DI02)"), b),
+            "task 1 of leader: nothing tells how often the loop at line 14 goes round");
   EXPECT_EQ(because(a, with(b, "    if (lData) SET_DO01; else CLEAR_DO01;\n", "")), "nothing in follower reads what it receives");
   EXPECT_EQ(because(with(with(a, "  while (1)", "  _SetInterrupt(SI_TIMER0, Tick);\n  while (1)"), "main()", "Tick() { H101++; }\nmain()"), b),
             "the interrupt routine Tick of leader may come in between");
