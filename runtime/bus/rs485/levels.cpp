@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace ipos::runtime {
 namespace {
@@ -22,8 +23,9 @@ Tick next_edge(std::span<const Transmission> line, Tick tick) {
 
 }  // namespace
 
-std::vector<bool> wire_bits(std::span<const uint8_t> bytes) {
-  std::vector<bool> bits;
+std::vector<bool> wire_bits(std::span<const uint8_t> bytes, std::vector<bool> memory) {
+  std::vector<bool> bits = std::move(memory);
+  bits.clear();
   bits.reserve(bytes.size() * kCharacterBits);
   for (const uint8_t byte : bytes)
     for (uint32_t n = 0; n < kCharacterBits; ++n) bits.push_back((wire_character(byte) >> n & 1) != 0);

@@ -25,8 +25,8 @@ struct Transmission {
   bool covers(Tick tick) const { return tick >= begin && tick < end(); }
 };
 
-// Bits of characters that follow each other without a gap.
-std::vector<bool> wire_bits(std::span<const uint8_t> bytes);
+// Bits of characters that follow each other without a gap, in the memory of others that are over.
+std::vector<bool> wire_bits(std::span<const uint8_t> bytes, std::vector<bool> memory = {});
 
 // A receiver: its rate, the station whose own transmissions it does not hear (kNoNode: it hears all), and whether its A and B
 // are interchanged.

@@ -53,10 +53,21 @@ Transmission* Rs485Line::sending(NodeId node) {
   return &*found;
 }
 
+bool Rs485Line::send(NodeId node, std::span<const uint8_t> bytes) {
+  if (!can_send(node) || bytes.empty()) return false;
+  forget_old();
+  std::vector<bool> memory;
+  if (!spare_.empty()) {
+    memory = std::move(spare_.back());
+    spare_.pop_back();
+  }
+  return send_bits(node, wire_bits(bytes, std::move(memory)));
+}
+
 bool Rs485Line::send_bits(NodeId node, std::vector<bool> bits) {
   assert(node < nodes_.size());
   Node& n = nodes_[node];
-  if (!n.connected || n.sent != kNoEvent || bits.empty()) return false;
+  if (!can_send(node) || bits.empty()) return false;
   forget_old();
   Transmission transmission{node, tick_from(queue_.now()), n.ear.bit_ticks, std::move(bits)};
   if (n.ear.swapped) transmission.bits.flip();
@@ -107,7 +118,11 @@ void Rs485Line::end_transmission(Transmission& transmission) {
 
 void Rs485Line::forget_old() {
   const Tick now = tick_from(queue_.now());
-  std::erase_if(transmissions_, [now](const Transmission& t) { return t.end() + kMemory < now; });
+  std::erase_if(transmissions_, [&](Transmission& t) {
+    if (t.end() + kMemory >= now) return false;
+    spare_.push_back(std::move(t.bits));
+    return true;
+  });
 }
 
 Tick Rs485Line::last_end() const {

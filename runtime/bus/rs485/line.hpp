@@ -34,7 +34,7 @@ class Rs485Line final : private EventTarget {
   // Telegrams that begin from now on are not struck any more, and what lasts ends; false: there is no such fault.
   bool end_fault(OctetFaultKind kind, NodeId sender);
 
-  bool send(NodeId node, std::span<const uint8_t> bytes) { return send_bits(node, wire_bits(bytes)); }
+  bool send(NodeId node, std::span<const uint8_t> bytes);
   bool send_bits(NodeId node, std::vector<bool> bits);  // also characters with errors
   void break_off(NodeId node);
 
@@ -84,6 +84,7 @@ class Rs485Line final : private EventTarget {
   void end_transmission(Transmission& transmission);
   Transmission* sending(NodeId node);
   void shorten(NodeId node, Tick end);
+  bool can_send(NodeId node) const { return nodes_[node].connected && nodes_[node].sent == kNoEvent; }
   void forget_old();
   Tick last_end() const;
   void report(const SerialEvent& event, SerialObserver* only = nullptr);
@@ -101,6 +102,7 @@ class Rs485Line final : private EventTarget {
   SerialFaults* faults_ = nullptr;
   OctetFaults planted_;
   std::vector<Transmission> transmissions_;  // under way, and ended but still part of a character
+  std::vector<std::vector<bool>> spare_;     // the memory of bits of those that are forgotten
   uint64_t characters_ = 0;
   Tick counted_until_ = 0;
   LoadMeter meter_{kTicksPerSecond};
