@@ -2,7 +2,7 @@
 # what it is made of: what it tells, what serves its program beside the drive, what it keeps, the commands.
 ipos_layer(journal FOLDERS runtime/journal USES clock)
 ipos_layer(services FOLDERS runtime/services
-  SOURCES services/timers.cpp services/mirrored_values.cpp services/pid_block.cpp services/positioning_service.cpp
+  SOURCES services/timers.cpp services/mirrored_values.cpp services/pid_block.cpp services/positioning_service.cpp services/synchronous_service.cpp
   USES journal drive positioning part stdlib
   LIBS fmt::fmt)
 ipos_batches(ipos_services HOT services/timers.cpp services/mirrored_values.cpp services/positioning_service.cpp)

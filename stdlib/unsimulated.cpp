@@ -15,6 +15,8 @@ constexpr UnitTest All = nullptr;
 bool OnMovidrive(const UnitType& unit) { return unit.lists.starts_with("md60a.tsv"); }
 bool OnMovitrac(const UnitType& unit) { return unit.lists.starts_with("mc07.tsv"); }
 bool OnMovitrac31(const UnitType& unit) { return unit.lists.starts_with("mc31.tsv"); }
+bool OnMovidriveWithCards(const UnitType& unit) { return OnMovidrive(unit) && unit.has(Trait::OptionCards); }
+bool OnMovidriveWithoutCards(const UnitType& unit) { return OnMovidrive(unit) && !unit.has(Trait::OptionCards); }
 bool OnMovidriveWithoutFieldbus(const UnitType& unit) {
   return OnMovidrive(unit) && !unit.has(Trait::FieldbusCard);
 }

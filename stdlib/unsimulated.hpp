@@ -12,8 +12,8 @@
 
 namespace ipos::stdlib {
 
-// Ideal: true while the plant does not ask for control = "real".
-enum class UnsimulatedScope : uint8_t { Unit, Bus, Ideal };
+// Ideal: true while the plant does not ask for control = "real". Uncoupled: while the plant names no master encoder X42.
+enum class UnsimulatedScope : uint8_t { Unit, Bus, Ideal, Uncoupled };
 
 // A row as it stands in the file, for documents.
 struct UnsimulatedRow {

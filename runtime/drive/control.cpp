@@ -41,7 +41,7 @@ void hear_terminals(const ControlInputs& in, Verdict& verdict) {
 void hear_program(const ControlInputs& in, Verdict& verdict) {
   if ((in.ipos_word & kIposInhibit) != 0) verdict.restrict_to(Command::Inhibit, Block::IposInhibit);
   if ((in.ipos_word & kIposNoEnable) != 0) verdict.restrict_to(Command::Stop, Block::IposNoEnable);
-  verdict.restrict_to(in.axis_stop, Block::AxisStop);
+  verdict.restrict_to(in.axis_stop, in.axis_stop == Command::Stop ? Block::SlaveStands : Block::AxisStop);
 }
 
 void hear_bus(const ControlInputs& in, Verdict& verdict) {

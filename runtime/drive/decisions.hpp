@@ -79,6 +79,7 @@ struct Decisions {
   bool enabled_locally = false;  // terminals and program enable, whatever a bus and faults say
   bool waiting = false;          // display t
   bool can_position = false;
+  bool can_synchronize = false;
   bool ready = false;
   uint32_t output_flags = 0;   // of the outputs, those that follow from the situation
   uint32_t overload_flag = 0;  // that of the motor in charge

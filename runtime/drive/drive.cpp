@@ -514,7 +514,7 @@ void Drive::select_parameter_set() {
              flag(axis.standing(), output_flags::kStandstill) |
              flag(axis.power().motor_utilization() >= kFullUtilization, decisions_.overload_flag) |
              flag(state_.position.in_position, output_flags::kInPosition) |
-             flag(state_.position.referenced, output_flags::kReferenced);
+             flag(state_.position.referenced, output_flags::kReferenced) | state_.position.output_flags;
   in.speed = axis.speed();
   // Compared with the setpoint before the ramp, so that P420 tells when it is reached (ours); positioning orders one
   // without a ramp.

@@ -12,6 +12,7 @@
 #include "runtime/drive/analog_outputs.hpp"
 #include "runtime/drive/control.hpp"
 #include "runtime/drive/decisions.hpp"
+#include "runtime/drive/encoder_inputs.hpp"
 #include "runtime/drive/link_watch.hpp"
 #include "runtime/drive/outputs.hpp"
 #include "runtime/drive/parameters.hpp"
@@ -57,6 +58,13 @@ class Drive final : private DriveLink {
   bool mains() const { return now_->mains; }
   bool runs_on_24v() const { return now_->link_is_low; }  // and can do nothing with its motor
   bool is_driven() const { return state_.axis.machine().driven; }
+  // What other shafts say at its encoder sockets. Positioning and synchronous operation read it.
+  void set_encoders(const EncoderInputs& encoders) {
+    if (encoders == encoders_) return;
+    encoders_ = encoders;
+    now_.change();
+  }
+  const EncoderInputs& encoders() const { return encoders_; }
 
   // PO words of a telegram; words it does not carry keep their value. They show in P094..P096 in any case and
   // act only if P876 is ON and the source is the one of P100 or P101. `cyclic` is false for acyclic RS-485
@@ -398,6 +406,7 @@ class Drive final : private DriveLink {
   };
   State state_;
   int32_t least_dc_link_;  // mV
+  EncoderInputs encoders_;                                     // nothing that the drive itself does depends on them
   FurtherWords further_po_{}, further_pi_{};                   // nothing that the drive does depends on them
   Scope scope_;                                                // while it runs every tick is executed
   std::array<std::optional<FaultResponse>, 256> responses_{};  // chosen by the program, by fault number

@@ -35,6 +35,7 @@ void Drive::decide_anew() const {
   d.enabled_locally = decide_locally(in).command == Command::Enable;
   d.waiting = in.waiting;
   d.can_position = mode_can_position();
+  d.can_synchronize = !now_->second_set && is_synchronous(set().operating_mode);
   d.ready = !now_->faults.error() && !now_->factory_setting && !now_->starting_up && !now_->link_is_low;
   const auto flag = [](bool on, uint32_t bit) { return on ? bit : 0; };
   d.output_flags = flag(now_->faults.error(), output_flags::kFault) |

@@ -104,9 +104,9 @@ bool Outputs::level(OutputFunction function, const OutputInputs& in, unsigned bi
     case F::CurrentLimit: return signals_.limit;
     case F::NoMotorUtilization1: return !in.is(kMotor1Overloaded);
     case F::NoMotorUtilization2: return !in.is(kMotor2Overloaded);
-    case F::NoDrsPrewarning:
-    case F::NoDrsLagError: return true;
-    case F::DrsInPosition:
+    case F::NoDrsPrewarning: return !in.is(kDrsPrewarning);
+    case F::NoDrsLagError: return !in.is(kDrsLagError);
+    case F::DrsInPosition: return in.is(kDrsInPosition);
     case F::PiReference: return false;
     case F::IposInPosition: return in.is(kInPosition);
     case F::IposReferenced: return in.is(kReferenced);

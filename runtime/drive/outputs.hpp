@@ -11,8 +11,7 @@
 
 namespace ipos::runtime {
 
-// Settings of P620..P637 the drive can show; the functions of the DRS card (16..18) stay at their quiet
-// level.
+// Settings of P620..P637 the drive can show; those of the DRS card (16..18) are at their quiet level without it.
 enum class OutputFunction : uint8_t {
   None = 0,
   NoFault = 1,
@@ -86,6 +85,9 @@ inline constexpr uint32_t kMotor1Overloaded = 1 << 7;
 inline constexpr uint32_t kMotor2Overloaded = 1 << 8;
 inline constexpr uint32_t kInPosition = 1 << 9;
 inline constexpr uint32_t kReferenced = 1 << 10;
+inline constexpr uint32_t kDrsPrewarning = 1 << 11;
+inline constexpr uint32_t kDrsLagError = 1 << 12;
+inline constexpr uint32_t kDrsInPosition = 1 << 13;
 }  // namespace output_flags
 
 struct OutputInputs {

@@ -260,7 +260,9 @@ void ParameterStore::block_process_data(const Parameter& changed) {
 }
 
 bool ParameterStore::counts(const stdlib::Unsimulated& one) const {
-  return one.row->scope != stdlib::UnsimulatedScope::Ideal || !options_.real_control;
+  using Scope = stdlib::UnsimulatedScope;
+  if (one.row->scope == Scope::Uncoupled) return !options_.master_encoder;
+  return one.row->scope != Scope::Ideal || !options_.real_control;
 }
 
 void ParameterStore::tell(uint16_t index) {

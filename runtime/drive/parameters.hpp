@@ -92,6 +92,7 @@ struct DriveOptions {
   int32_t type_code = 0;      // P070, whose codes no manual read prints
   bool real_control = false;  // speed and current are what motor and load make of them; else the speed is the setpoint's
   bool own_motor = false;     // the plant describes it
+  bool master_encoder = false;  // at X42 of the DRS card: without it there is no synchronous operation
 
   // The version is at least this one of the standard unit, or of LOGODrive.
   bool firmware_from(uint8_t standard, uint8_t of_logodrive) const {

@@ -1,5 +1,5 @@
-// What the positioning of IPOS orders of the drive, every millisecond. The logic of enable stays above it:
-// stop, rapid stop, inhibit and faults win.
+// What the positioning of IPOS, or synchronous operation, orders of the drive, every millisecond. The logic of enable
+// stays above it: stop, rapid stop, inhibit and faults win.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +12,11 @@ struct PositionControl {
   // The enabled axis follows `speed`; setpoint source, ramps and minimum speed do not count.
   bool controls = false;
   int32_t speed = 0;               // 1/1000 rpm, positive is CW of the motor
-  Command halt = Command::Enable;  // _AxisStop: RapidStop or HoldControl as long as it lasts
+  // _AxisStop: RapidStop or HoldControl as long as it lasts. Stop: a slave in synchronous operation that has to stand.
+  Command halt = Command::Enable;
   bool in_position = false;        // for the outputs
   bool referenced = false;
+  uint32_t output_flags = 0;  // more for the outputs (outputs.hpp)
 
   bool operator==(const PositionControl&) const = default;
 };

@@ -47,6 +47,11 @@ constexpr bool is_torque_control(int32_t operating_mode) {
   return operating_mode == 12 || operating_mode == 17;
 }
 
+// P700: the modes with SYNC., in parameter set 1 only (DRS11B manual p. 30).
+constexpr bool is_synchronous(int32_t operating_mode) {
+  return operating_mode == 8 || operating_mode == 14 || operating_mode == 19;
+}
+
 // P700: CFC and SERVO, of which P205 and P304 are.
 constexpr bool is_field_oriented(int32_t operating_mode) { return operating_mode >= 11 && operating_mode <= 20; }
 

@@ -31,6 +31,10 @@ enum class InputFunction : uint8_t {
   SlaveFreeRun = 19,
   SetpointHold = 20,
   MainsOn = 21,
+  DrsZeroPoint = 22,  // of the DRS card, as the next three
+  DrsSlaveStart = 23,
+  DrsTeachIn = 24,
+  DrsMasterStopped = 25,
   TemperatureSensor = 26,
   ControllerInhibit = 32,  // slash; DI00 of MOVIDRIVE has it without a parameter
 };

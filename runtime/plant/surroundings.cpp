@@ -1,4 +1,4 @@
-// Wires, switches and belts first, then what is due, then what is held.
+// Wires, switches, encoder cables and belts first, then what is due, then what is held.
 #include "runtime/plant/surroundings.hpp"
 
 #include <fmt/format.h>
@@ -17,6 +17,19 @@ void drive(const signals::Signal& input, bool level) {
   if (std::as_const(*input.owner).inputs().line(input.number).driven != driven) input.line().driven = driven;
 }
 
+// The count of a shaft at a socket of another station, which is touched only when the shaft has turned.
+void count(Station& station, EncoderSocket socket, int32_t shaft) {
+  EncoderInputs encoders = std::as_const(station).drive().state().encoders();
+  (socket == EncoderSocket::X14 ? encoders.x14 : encoders.x42) = shaft;
+  if (encoders != std::as_const(station).drive().state().encoders()) station.drive().state().set_encoders(encoders);
+}
+
+Station* station_of(const PlantParts& plant, std::string_view name) {
+  for (const auto& station : plant.stations())
+    if (station->config().name == name) return station.get();
+  return nullptr;
+}
+
 }  // namespace
 
 void Surroundings::connect(const PlantFile& file, const PlantParts& plant, std::vector<PlantError>& errors) {
@@ -33,6 +46,9 @@ void Surroundings::connect(const PlantFile& file, const PlantParts& plant, std::
   }
   for (const PositionSwitch& row : file.switches)
     if (const auto input = find(row.input, row.place)) cams_.push_back({*input, input->owner, row.from, row.to, row.active_high});
+  for (const auto& station : plant.stations())
+    for (const EncoderUse& use : station->config().encoders)
+      if (const Station* from = station_of(plant, use.shaft)) cables_.push_back({from, station.get(), use.socket});
   for (const auto& station : plant.stations())
     if (const auto& machine = station->config().driven; machine && machine->carries())
       conveyors_.push_back({station.get(), Belt(*machine)});
@@ -86,6 +102,7 @@ void Surroundings::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) 
     const bool within = position >= cam.from && position <= cam.to;
     drive(cam.input, within == cam.active_high);
   }
+  for (const EncoderCable& cable : cables_) count(*cable.to, cable.socket, cable.from->shaft_position());
   for (Conveyor& conveyor : conveyors_) conveyor.belt.move(conveyor.station->shaft_position());
   for (const Barrier& barrier : barriers_) drive(barrier.input, barrier.belt->covers(barrier.way) == barrier.active_high);
   while (!due_.empty() && due_.begin()->first <= now) {
@@ -145,7 +162,7 @@ void Surroundings::write(Time now, const signals::Signal& signal, int32_t value)
 
 void Surroundings::schedule_next(Time now) {
   Time next = (now / kMillisecond + 1) * kMillisecond;
-  if (wires_.empty() && cams_.empty() && conveyors_.empty() && holds_.empty()) {
+  if (wires_.empty() && cams_.empty() && cables_.empty() && conveyors_.empty() && holds_.empty()) {
     if (due_.empty()) return;
     next = std::max(next, (due_.begin()->first + kMillisecond - 1) / kMillisecond * kMillisecond);
   }

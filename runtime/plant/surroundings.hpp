@@ -1,4 +1,4 @@
-// What is outside of the stations and acts on them: wires between terminals, switches at the axis, light barriers over
+// What is outside of the stations and acts on them: wires between terminals, encoder cables, switches at the axis, light barriers over
 // conveyors, and the stimuli of the plant file. It acts at the beginning of a millisecond, before any station's tick, on all
 // stations alike: so a wire brings the level its output had at the end of the millisecond before (ours).
 #pragma once
@@ -60,6 +60,11 @@ class Surroundings final : private EventTarget {
     int32_t to;
     bool active_high;
   };
+  struct EncoderCable {  // from the motor encoder of one station to a socket of another one
+    const Station* from;
+    Station* to;
+    EncoderSocket socket;
+  };
   struct Conveyor {
     const Station* station;
     Belt belt;
@@ -93,6 +98,7 @@ class Surroundings final : private EventTarget {
   Journal& journal_;
   std::vector<LiveWire> wires_;
   std::vector<Cam> cams_;
+  std::vector<EncoderCable> cables_;
   std::deque<Conveyor> conveyors_;
   std::vector<Barrier> barriers_;
   std::vector<Script> scripts_;

@@ -20,6 +20,7 @@
 #include "runtime/nv_memory/medium/file_medium.hpp"
 #include "runtime/plant_file/bus_kind.hpp"
 #include "runtime/plant_file/driven_machine.hpp"
+#include "runtime/plant_file/encoder_socket.hpp"
 #include "runtime/plant_file/foreign_machine.hpp"
 #include "runtime/plant_file/profibus_config.hpp"
 #include "runtime/plant_file/signal.hpp"
@@ -93,6 +94,7 @@ struct StationConfig {
   AnalogInputs analog;
   MachineData machine;           // [station.motor], .unit_rating, .brake, .load; the rest is the default machine's
   std::optional<DrivenMachine> driven;  // [station.machine]
+  std::vector<EncoderUse> encoders;     // [station.encoders]
   std::vector<std::string> hex;  // variables the watch shows in hexadecimal
   FilePlace place;
   FilePlace program_place;

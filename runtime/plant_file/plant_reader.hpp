@@ -126,6 +126,7 @@ void read_gateway(PlantReader& reader, const toml::table& table);
 void read_machine(PlantReader& reader, const toml::table& station, StationConfig& config);
 // [station.motor], unit_rating, control, brake and load: all of MachineData.
 void read_motor(PlantReader& reader, const toml::table& station, StationConfig& config);
+void read_encoders(PlantReader& reader, const toml::table& station, StationConfig& config);
 void read_foreign_machines(PlantReader& reader, const toml::table& root);
 // Of a [[switch]] with part_at, all but its input and its active level.
 void read_barrier(PlantReader& reader, const toml::table& table, LightBarrier barrier);

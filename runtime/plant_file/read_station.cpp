@@ -189,6 +189,7 @@ void read_station(PlantReader& reader, const toml::table& table) {
                      "brake",
                      "load",
                      "machine",
+                     "encoders",
                      "hex",
                      "terminator2",
                      "profibus_terminator"});
@@ -230,6 +231,7 @@ void read_station(PlantReader& reader, const toml::table& table) {
   read_analog(reader, table, config);
   read_motor(reader, table, config);
   read_machine(reader, table, config);
+  read_encoders(reader, table, config);
   read_hex(reader, table, config);
   reader.result.plant.stations.push_back(std::move(config));
 }

@@ -28,7 +28,22 @@ void Encoders::set_position(PositionSource source, int32_t position) {
   find_positions();
 }
 
+// H510 goes on from the number it has.
+void Encoders::count_other(std::optional<int32_t> count) {
+  const int64_t position = exact(PositionSource::External);
+  if (external_ && count)
+    external_turned_ += wrapped(int64_t{*count} - *external_);
+  else
+    external_turned_ = 0;
+  const bool goes_on = external_.has_value() && count.has_value();
+  external_ = count;
+  if (!goes_on) external_offset_ += position - exact(PositionSource::External);
+  find_positions();
+}
+
+// Of an encoder X14 that something else turns no zero pulse is known (ours).
 std::optional<int32_t> Encoders::zero_pulse(PositionSource source, int way) const {
+  if (source == PositionSource::External && external_) return std::nullopt;
   // The pulses a shaft passes on its way from 1 to 4096 and back are the one at 4096 and the one at 0 or
   // below.
   const int64_t pulse =

@@ -1,5 +1,5 @@
 // The three encoders: motor X15, external X14, absolute DIP (H511, H510, H509). The simulated external ones
-// are coupled to the motor without slip, with the ratio P942 and P943 state (ours).
+// are coupled to the motor without slip, with the ratio P942 and P943 state (ours), unless something else turns X14.
 #pragma once
 
 #include <array>
@@ -29,6 +29,13 @@ class Encoders {
     counter_ = motor_counter;
     find_positions();
   }
+  // What turns X14 in place of the motor, as it counts; nothing: the motor does. It begins where X14 stands. True: it has
+  // turned.
+  bool count_external(std::optional<int32_t> count) {
+    if (count == external_) return false;
+    count_other(count);
+    return true;
+  }
   int32_t counter() const { return counter_; }  // as last counted
   // It was told this count twice.
   bool stands_at(int32_t motor_counter) const {
@@ -52,14 +59,16 @@ class Encoders {
   bool operator==(const Encoders&) const = default;
 
  private:
+  void count_other(std::optional<int32_t> count);
   void find_positions() {
     const int64_t count = counted(turned_);
-    positions_.by_source = {wrapped(turned_ + motor_offset_), wrapped(count + external_offset_),
+    positions_.by_source = {wrapped(turned_ + motor_offset_), wrapped((external_ ? external_turned_ : count) + external_offset_),
                             wrapped((inverted_ ? -count : count) + absolute_zero_ + absolute_offset_)};
   }
   int64_t exact(PositionSource source) const { return scaled(source, turned_) + offset(source); }
   int64_t scaled(PositionSource source, int64_t motor) const {
     if (source == PositionSource::Motor) return motor;
+    if (source == PositionSource::External && external_) return external_turned_;
     const int64_t count = counted(motor);
     return source == PositionSource::Absolute && inverted_ ? -count : count;
   }
@@ -83,6 +92,8 @@ class Encoders {
   int32_t counter_ = 0;
   int64_t turned_ = 0;         // by the motor ever; zero pulses at multiples of a turn
   int64_t turned_before_ = 0;  // a millisecond ago
+  std::optional<int32_t> external_;  // count of X14 where it does not follow the motor
+  int64_t external_turned_ = 0;      // the same, without wrapping
   int64_t motor_offset_ = 0;
   int64_t external_offset_ = 0;
   int64_t absolute_offset_ = 0;

@@ -33,6 +33,14 @@ constexpr int64_t floor_divide(int64_t value, int64_t by) {
   return value / by - (value % by != 0 && (value < 0) != (by < 0) ? 1 : 0);
 }
 
+// The whole square root.
+constexpr Rate root(Wide value) {
+  Rate result = 0;
+  for (Rate bit = Rate{1} << 60; bit != 0; bit >>= 1)
+    if (Wide{result + bit} * (result + bit) <= value) result += bit;
+  return result;
+}
+
 // Increments of the motor encoder for those of the source of the actual position: P942 / P943.
 struct EncoderFactor {
   int32_t numerator = 1;

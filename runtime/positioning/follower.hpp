@@ -12,6 +12,7 @@ namespace ipos::runtime {
 
 struct MasterInputs {
   bool follow = false;   // the program wants it, and it is possible
+  bool catch_up = false;  // and makes up for the way that it loses while it couples
   bool sync = false;     // a sync telegram has come since the last millisecond
   int32_t position = 0;  // of the master, as the slave has it
   // Way of the slave for a way of the master: slave / master.

@@ -118,6 +118,12 @@ void Positioner::find_rules() {
   plan_follows_ = false;
 }
 
+// A turn of the output counts where P941 takes its position from X14.
+inline void Positioner::count_external() {
+  const int32_t before = actual();
+  if (encoders_.count_external(inputs_.external)) modulo_.move(wrapped(int64_t{actual()} - before));
+}
+
 // Something else moves the axis, or nothing: position setpoint and actual position are one.
 void Positioner::rest() {
   if (following_) {
@@ -258,6 +264,7 @@ PositioningOrder Positioner::tick(const PositioningInputs& inputs) {
   if (!modulo_.possible()) configure_modulo();
   inputs_ = inputs;
   find_rules();
+  count_external();
   touch_probes_.tick(inputs.levels, encoders_);
   if (inputs.reference_start && !reference_input_) start_reference(false, false);
   reference_input_ = inputs.reference_start;

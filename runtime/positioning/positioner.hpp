@@ -54,6 +54,7 @@ struct PositioningInputs {
   bool reference_start = false;
   int32_t override_permille = 1000;  // 1000 with P930 = OFF
   uint32_t modulo_control = 0;       // H453
+  std::optional<int32_t> external;   // count of an encoder X14 that does not follow the motor
   MasterInputs master;
   bool operator==(const PositioningInputs&) const = default;
 };
@@ -165,6 +166,7 @@ class Positioner {
   void run_travel();
   bool follow_master();
   void couple();
+  Fine approach(Rate& speed);
   void watch_limit_switches();
   bool plan_holds(int64_t goal) const { return plan_follows_ && planned_target_ == goal; }
   void plan(int64_t goal, const TravelRules& rules);
@@ -175,6 +177,7 @@ class Positioner {
     encoders_.count(motor_counter);
     modulo_.move(wrapped(int64_t{actual()} - before));
   }
+  void count_external();
   void keep_in_range();
   int32_t lead();
   int32_t speed_order() const;
@@ -211,6 +214,7 @@ class Positioner {
   ReferenceTravel::Order reference_order_;
   FollowState follow_state_ = FollowState::Free;
   bool follow_refused_ = false;  // until the program gives it up
+  Fine follow_lost_ = 0;         // way of the master, since it was to be followed, that the axis has not made
 
   // Of the present plan; nothing: there is none.
   std::optional<int64_t> planned_target_;

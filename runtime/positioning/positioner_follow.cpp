@@ -1,4 +1,4 @@
-// Following a master (ISYNC): coupling on the positioning ramp, then its path increment by increment.
+// Following a master (ISYNC): coupling on the positioning ramp, with or without catching up, then its path increment by increment.
 #include "runtime/positioning/positioner.hpp"
 
 namespace ipos::runtime {
@@ -8,7 +8,10 @@ bool Positioner::follow_master() {
   const MasterInputs& master = inputs_.master;
   if (!master.follow) follow_refused_ = false;
   if (master.follow && !follow_refused_ && follower_.known() && !reference_.active()) {
-    if (follow_state_ == FollowState::Free) follow_state_ = FollowState::Coupling;
+    if (follow_state_ == FollowState::Free) {
+      follow_state_ = FollowState::Coupling;
+      follow_lost_ = 0;
+    }
     couple();
     return true;
   }
@@ -19,24 +22,38 @@ bool Positioner::follow_master() {
   return false;
 }
 
-// P911 up to the speed of the master; the way lost meanwhile stays lost. From then on every increment counts.
+// P911 up to the speed of the master, and with `catch_up` beyond it, so that the axis arrives at the place of the master and
+// at its speed on the same ramp. The way to go in this millisecond, and the speed at its end.
+Fine Positioner::approach(Rate& speed) {
+  constexpr Rate kFiner = Rate{1} << (kRateBits - kFineBits);
+  const Rate now = profile_.speed();
+  const Rate change = std::max<Rate>(1, rules_.reference / rules_.up_ms);
+  const bool catches_up = inputs_.master.catch_up;
+  Rate wanted = speed;
+  if (catches_up) {
+    const Rate top = rate_of_speed(std::max(settings_.maximum_speed, 0), factor_);
+    wanted = std::clamp(speed + sign(follow_lost_) * root(Wide{2} * change * magnitude(follow_lost_) * kFiner), -top, top);
+  }
+  // The path of the master is as fine as its telegrams; a few steps of the ramp are less.
+  constexpr Rate kSteps = 4;
+  const bool arrives = !catches_up || magnitude(follow_lost_) * kFiner <= kSteps * change;
+  if (arrives && magnitude(speed - now) <= (catches_up ? kSteps : 1) * change) {
+    follow_state_ = FollowState::Synchronous;
+    return follower_.step() + (catches_up ? follow_lost_ : 0);
+  }
+  speed = now + std::clamp(wanted - now, -change, change);
+  const Fine step = (now + speed) / (2 * kFiner);
+  follow_lost_ += follower_.step() - step;
+  return step;
+}
+
+// In step every increment of the master counts.
 void Positioner::couple() {
   // More than twice what P302 allows; a ramp from more has no room in the numbers of a profile.
   const Rate top = 4 * rules_.reference;
-  const Rate wanted = std::clamp(follower_.step() * (Rate{1} << (kRateBits - kFineBits)), -top, top);
-  const Rate now = profile_.speed();
-  const Rate change = std::max<Rate>(1, rules_.reference / rules_.up_ms);
-  Rate next = wanted;
-  Fine step = follower_.step();
-  if (follow_state_ == FollowState::Coupling) {
-    if (magnitude(wanted - now) <= change) {
-      follow_state_ = FollowState::Synchronous;
-    } else {
-      next = now + sign(wanted - now) * change;
-      step = (now + next) / (Rate{2} << (kRateBits - kFineBits));
-    }
-  }
-  profile_.hold(profile_.position() + step, next);
+  Rate speed = std::clamp(follower_.step() * (Rate{1} << (kRateBits - kFineBits)), -top, top);
+  const Fine step = follow_state_ == FollowState::Coupling ? approach(speed) : follower_.step();
+  profile_.hold(profile_.position() + step, speed);
   planned_target_.reset();
   target_ = setpoint();
   ordered_target_.reset();

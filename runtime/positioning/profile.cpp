@@ -21,14 +21,6 @@ Fine ramp_way(Rate speed, int32_t ms, const TravelRules& rules) {
 // Time for a way at a speed.
 Span time_for(Fine way, Rate speed) { return clamp_span((Wide{way} << kRateBits) / speed); }
 
-// The whole square root.
-Rate root(Wide value) {
-  Rate result = 0;
-  for (Rate bit = Rate{1} << 60; bit != 0; bit >>= 1)
-    if (Wide{result + bit} * (result + bit) <= value) result += bit;
-  return result;
-}
-
 // Greatest speed of a travel over `way` that begins with `speed` and ends at rest.
 Rate peak_speed(Fine way, Rate speed, const TravelRules& rules) {
   const Wide square =

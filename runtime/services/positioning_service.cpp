@@ -195,6 +195,7 @@ inline void PositioningService::read_inputs(std::span<const int32_t> h, uint32_t
   inputs_.levels = drive_.inputs();
   inputs_.override_permille = settings_.override_on == 1 ? override_of(drive_.analog()) : kNoOverride;
   inputs_.modulo_control = static_cast<uint32_t>(h[kModuloCtrl]);
+  inputs_.external = drive_.encoders().x14;
   inputs_.master = settings_.technology_function == kIsync ? master(h, syncs != syncs_) : MasterInputs{};
   syncs_ = syncs;
 }
@@ -207,6 +208,7 @@ MasterInputs PositioningService::master(std::span<const int32_t> h, bool sync) c
   MasterInputs master;
   master.sync = sync;
   master.follow = (h[kSyncControl] & 1) != 0;
+  master.catch_up = (h[kSyncControl] & 2) != 0;
   master.position = h[source];
   if (h[kGearMaster] != 0) master.gear_master = h[kGearMaster];
   if (h[kGearSlave] != 0) master.gear_slave = h[kGearSlave];
@@ -252,6 +254,9 @@ const PositionControl& PositioningService::order_anew(Time now, std::span<int32_
     positioner_.take_over(settings_);
   }
   const Followed followed{drive_.changes(), changes_};
+  // Where the master turns an encoder X14, its position is taken as often as a telegram would bring it (ours).
+  constexpr Time kEvery = 5 * kMillisecond;
+  if (h.size() > kSyncSource && h[kSyncSource] == kActPosExt && drive_.encoders().x14 && now % kEvery == 0) syncs_ = syncs - 1;
   read_inputs(h, syncs);
   if (inputs_.reference_start && !positioner_.inputs().reference_start)
     not_ordered(PositioningCause::Reference);

@@ -65,7 +65,7 @@ void ManyTicks::compare_tick(Time now) {
 bool ManyTicks::is_steady(const Before& before) {
   Drive& drive = unit_.drive();
   const Ticks ticks = drive.steady_since(before.drive);
-  if (ticks == 0 || before.commands != positioning_commands()) return false;
+  if (ticks == 0 || before.commands != positioning_commands() || unit_.synchronizes()) return false;
   if (const PositioningService* positioning = unit_.positioning(); positioning != nullptr) {
     if (!positioning->reads_system_variables_only()) return false;
     // In motion only what positioning cannot act on goes on by itself.

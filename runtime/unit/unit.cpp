@@ -84,7 +84,9 @@ void Unit::take_inputs() {
 
 const PositionControl& Unit::order_position(Time now) {
   static constexpr PositionControl kNone;
-  return positioning_ ? positioning_->order(now, variables(), drive_.syncs()) : kNone;
+  if (!positioning_) return kNone;
+  const PositionControl& order = positioning_->order(now, variables(), drive_.syncs());
+  return synchronous_ ? synchronous_->order(now, order) : order;
 }
 
 // An error that is new, or back after a reset, is the event of the ERROR interrupt; warnings are not (ours).

@@ -18,6 +18,7 @@
 #include "runtime/journal/journal.hpp"
 #include "runtime/services/mirrored_values.hpp"
 #include "runtime/services/pid_block.hpp"
+#include "runtime/services/synchronous_service.hpp"
 #include "runtime/services/timers.hpp"
 #include "runtime/unit/unit_interface.hpp"
 #include "runtime/unit/execution.hpp"
@@ -112,6 +113,9 @@ class Unit final {
   UnitInputs& inputs() { return inputs_; }
   const UnitInputs& inputs() const { return inputs_; }
   const PositioningService* positioning() const { return positioning_ ? &*positioning_ : nullptr; }
+  // It follows a master with its DRS card, or might in the next millisecond.
+  bool synchronizes() const { return synchronous_ && synchronous_->selected(); }
+  const SynchronousService* synchronous() const { return synchronous_ ? &*synchronous_ : nullptr; }
   const Timers& timers() const { return timers_; }
   // The unit has a PID controller, and it is on.
   bool controls() const { return pid_ && !PidBlock::is_off(variables()); }
@@ -160,6 +164,7 @@ class Unit final {
   UnitInterface drive_;
   std::optional<vm::Machine> machine_;
   std::optional<PositioningService> positioning_;  // of a unit that has it
+  std::optional<SynchronousService> synchronous_;  // of one with a master encoder at its DRS card
 
   const EventQueue& clock_;
   UnitConfig config_;

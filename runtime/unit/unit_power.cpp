@@ -28,6 +28,7 @@ void Unit::power_on() {
   positioning_.emplace(drive(), drive_.parameters(), journal_, config_.name,
                        [this](uint32_t address) { return source_place(address); });
   positioning_commands_.emplace(*positioning_);
+  if (config_.options.master_encoder) synchronous_.emplace(drive(), drive_.parameters(), journal_, config_.name);
 }
 
 void Unit::restart_program_memory(Time now) {

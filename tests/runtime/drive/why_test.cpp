@@ -133,6 +133,7 @@ TEST(Why, EveryBlockOccurs) {
          rig.run_ms(400);
        }},
       {Block::MainsOff, "md60a", [](DriveRig& rig) { rig.set("P604", 21); }},
+      {Block::SlaveStands, "md60a", [](DriveRig& rig) { rig.positioning.halt = runtime::Command::Stop; }},
       {Block::LimitCw, "md60a", [](DriveRig& rig) { rig.set("P604", 14); }},
       {Block::LimitCcw, "md60a",
        [](DriveRig& rig) {

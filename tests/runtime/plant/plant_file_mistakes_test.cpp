@@ -45,6 +45,24 @@ TEST(PlantFileMistakes, OfTheForms) {
   expect_mistakes("", {{"a = 1\na = ^2\n", "redefine"}, {"car = 1\nb = \"x^\n", ""}});
 }
 
+TEST(PlantFileMistakes, OfEncoders) {
+  const std::string master = "[[station]]\nname = 'm'\nunit = 'mc07'\n";
+  const auto begin = [&](const char* unit) { return master + "[[station]]\nname = 'u'\nunit = '" + unit + "'\n[station.encoders]\n"; };
+  const PlantFile plant = read_plant(begin("md60a") + "X42 = 'm'\nX14 = 'm'\n");
+  ASSERT_EQ(plant.stations.at(1).encoders.size(), 2U);
+  EXPECT_EQ(plant.stations.at(1).encoders[0].socket, EncoderSocket::X14);
+  EXPECT_EQ(plant.stations.at(1).encoders[1].shaft, "m");
+  EXPECT_TRUE(plant.stations.at(1).options.master_encoder);
+  EXPECT_FALSE(read_plant(begin("compact") + "X14 = 'm'\n").stations.at(1).options.master_encoder);
+  expect_mistakes(begin("mdxb"), {{"^X15 = 'm'\n", "unknown key 'X15' in [station.encoders]; known are X14, X42"},
+                                  {"X14 = ^1\n", "X14 must be a text in quotes"},
+                                  {"X14 = ^''\n", "X14 must not be empty"},
+                                  {"X42 = ^'u'\n", "X42 takes the shaft of another station"},
+                                  {"X42 = ^'n'\n", "there is no station 'n'"}});
+  expect_mistakes(begin("compact"), {{"X42 = ^'m'\n", "X42 is of md60a, mdxb; unit compact has no such socket"}});
+  expect_mistakes(begin("mc07"), {{"X14 = ^'m'\n", "unit mc07 has no such socket"}});
+}
+
 TEST(PlantFileMistakes, NumbersHave32Bits) {
   const std::string begin =
       kMistakenUnit + "[[expect]]\nstation = 'u'\nat = '1ms'\nvariable = 'x'\nequals = ";

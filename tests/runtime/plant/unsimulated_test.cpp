@@ -6,6 +6,7 @@
 
 #include "runtime/drive/settings.hpp"
 #include "runtime/positioning/settings.hpp"
+#include "runtime/positioning/synchronous.hpp"
 #include "runtime/station/sbus_port.hpp"
 #include "runtime/unit/unit_interface.hpp"
 #include "stdlib/faults.hpp"
@@ -42,6 +43,10 @@ Reading read(const UnitInterface& unit) {
 #define POSITIONING_SETTING(member, number, absent) unit.value(number),
 #include "runtime/positioning/settings.def"
     };
+  if (unit.unit().has(stdlib::Trait::OptionCards)) {
+#define SYNCHRONOUS_SETTING(member, number, absent) reading.positioning.push_back(unit.value(number));
+#include "runtime/positioning/synchronous.def"
+  }
   for (const int sbus : {1, 2}) {
     if (sbus == 2 && !unit.unit().has(stdlib::Trait::Sbus2)) continue;
     const SbusSettings s = sbus_settings(unit, sbus);
@@ -96,7 +101,8 @@ TEST(Unsimulated, EveryWritableParameterIsReadOrNamed) {
       const auto rows = stdlib::unsimulated(type, parameter->index);
       const bool named = std::any_of(rows.begin(), rows.end(), [&](const Unsimulated& one) {
         return one.parameter == parameter && one.values.empty() &&
-               one.row->scope != stdlib::UnsimulatedScope::Ideal;  // read, and told without control = "real"
+               one.row->scope != stdlib::UnsimulatedScope::Ideal &&  // read, and told without control = "real"
+               one.row->scope != stdlib::UnsimulatedScope::Uncoupled;  // or without X42 of [station.encoders]
       });
       EXPECT_NE(is_read(type, *parameter) && !((type.name == "compact" &&
                                                 (parameter->number == "819" || parameter->number == "831")) ||
@@ -123,6 +129,28 @@ TEST(Unsimulated, RowsFitTheLists) {
               << type.name << " P" << one.parameter->number << " = " << value;
     }
   EXPECT_EQ(used.size(), stdlib::unsimulated_rows().size());
+}
+
+// What is told without a master encoder alone.
+TEST(Unsimulated, OfUncoupledSlavesIsToldThereOnly) {
+  DriveOptions coupled;
+  coupled.master_encoder = true;
+  size_t rows = 0;
+  for (const stdlib::UnitType& type : stdlib::unit_types())
+    for (const Unsimulated& one : stdlib::unsimulated(type)) {
+      if (one.row->scope != stdlib::UnsimulatedScope::Uncoupled) continue;
+      for (const int64_t value : other_values(*one.parameter)) {
+        if (!one.applies(static_cast<int32_t>(value))) continue;
+        ++rows;
+        UnitInterface alone(type), follower(type, {}, coupled);
+        for (UnitInterface* unit : {&alone, &follower})
+          ASSERT_TRUE(unit->parameters().preset(one.parameter->index, static_cast<int32_t>(value)));
+        EXPECT_EQ(alone.parameters().tell_settings(), std::vector{one.text(static_cast<int32_t>(value))});
+        EXPECT_TRUE(follower.parameters().tell_settings().empty()) << one.text(static_cast<int32_t>(value));
+        break;
+      }
+    }
+  EXPECT_GT(rows, 60U);
 }
 
 // What only ideal control leaves out is told without control = "real" alone.

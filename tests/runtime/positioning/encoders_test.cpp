@@ -239,5 +239,44 @@ TEST(TouchProbes, ShowInTheirVariables) {
   EXPECT_EQ(rig.h[502], second / 4);
 }
 
+// Something else turns X14: H510 goes on from what it shows, counts every increment through the ends of the range, and the
+// touch probe takes it. Left alone again it follows the motor from there.
+TEST(Encoders, AnotherShaftAtX14) {
+  Rig rig;
+  const auto turn = [&](int64_t count) {
+    rig.drive.set_encoders({runtime::wrapped(count), {}});
+    rig.tick();
+    return rig.h[510];
+  };
+  EXPECT_EQ(turn(INT32_MAX - 100), 0) << "what the other one has turned before is nothing";
+  EXPECT_EQ(turn(int64_t{INT32_MAX} + 400), 500);
+  EXPECT_EQ(turn(INT32_MAX - 1'000), -900);
+  rig.positioner().touch_probes().enable(0, true, false);
+  rig.run(2);
+  rig.drive.set_inputs(kEnabled | 1U << 2);
+  EXPECT_EQ(turn(INT32_MAX - 900), -800);
+  EXPECT_EQ(rig.h[506], -800);
+  EXPECT_EQ(rig.h[511], 0);
+  rig.drive.set_encoders({});
+  rig.run(2);
+  EXPECT_EQ(rig.h[510], -800);
+  rig.go(2'000);
+  rig.run_until([&] { return rig.h[511] == 2'000; });
+  EXPECT_EQ(rig.h[510], 1'200);
+}
+
+// A source of the position that the motor does not move: the axis cannot hold its place, and that is a lag error.
+TEST(Encoders, PositionOfAnotherShaftIsALagError) {
+  Rig rig({{"941", 1}, {"923", 1'000}});
+  for (int count = 0; count <= 1'000; count += 100) {
+    rig.drive.set_encoders({count, {}});
+    rig.tick();
+  }
+  EXPECT_EQ(rig.drive.fault(), 0);
+  rig.drive.set_encoders({1'200, {}});
+  rig.run(3);
+  EXPECT_EQ(rig.drive.fault(), 42);
+}
+
 }  // namespace
 }  // namespace ipos::tests
