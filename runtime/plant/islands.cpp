@@ -1,4 +1,4 @@
-// Cables join; what is left apart is an island.
+// Who is on two lines joins them; what is left apart is an island.
 #include "runtime/plant/islands.hpp"
 
 #include <algorithm>

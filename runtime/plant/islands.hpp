@@ -1,7 +1,8 @@
-// The islands of a plant: lines, stations and controls that no cable joins to the others. Each has a queue of events and a
-// journal of its own. So one runs on its own for a while, as long as its stations are at hand in the caches, and then the
-// next; or several run at once, on threads. Wires, switches and stimuli act on all islands alike: at their moment every
-// island has come so far. The order of events within an island is that of one queue, so results are the same.
+// The islands of a plant: lines with their stations and controls that no station and no gateway joins to other lines. Each
+// has a queue of events and a journal of its own. So one runs on its own for a while, as long as its stations are at hand in
+// the caches, and then the next; or several run at once, on threads. Wires, encoder cables, switches and stimuli act on all
+// islands alike: at their moment every island has come so far. The order of events within an island is that of one queue, so
+// results are the same.
 #pragma once
 
 #include <functional>

@@ -32,10 +32,12 @@ PlantInput named(PlantInput input, const std::string& prefix) {
   };
   runtime::PlantFile& file = input.file;
   for (auto& bus : file.buses) rename(bus.name);
-  for (auto& station : file.stations)
+  for (auto& station : file.stations) {
+    for (auto& encoder : station.encoders) rename(encoder.shaft);
     for (std::string* name : {&station.name, &station.sbus, &station.sbus2, &station.serial.x13.bus, &station.serial.xt.bus,
                               &station.profibus.bus.bus})
       rename(*name);
+  }
   for (auto& control : file.controls) {
     rename(control.name);
     rename(control.sbus);
@@ -173,8 +175,8 @@ TEST(Islands, OfPlantsOfChance) {
   }
 }
 
-// Cables join: both SBuses of a unit, a gateway, the lines of a serial station. Who is on no line is an island with the others.
-TEST(Islands, AreWhatCablesJoin) {
+// Who is on two lines joins them: by both SBuses of a unit, as a gateway, by SBus and RS-485. Who is on no line is an island with the others.
+TEST(Islands, AreWhatNobodyJoins) {
   const TemporaryFolder folder;
   const auto count = [&](const std::string& text) {
     return islands_of(read(folder.write("plant.toml", text)), 4);
