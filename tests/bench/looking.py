@@ -21,6 +21,7 @@ HOW = {
     "csv": ["--trace", "run.csv"],
     "vcd": ["--trace", "run.vcd"],
     "jsonl": ["--trace", "run.jsonl"],
+    "packed": ["--trace", "run.ipos-trace"],
     "hash": ["--trace-hash"],
 }
 

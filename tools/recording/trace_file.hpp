@@ -1,4 +1,4 @@
-// A recording as a `.ipos-trace`: columns of numbers in packed blocks, a tenth of the size of a text and of its price. It is
+// A recording as a `.ipos-trace`: columns of numbers in packed blocks, a tenth of the size of a text. It is
 // read again part by part, so that each text can be made of it. docs/reference/trace-file.md describes the bytes.
 #pragma once
 
