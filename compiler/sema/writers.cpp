@@ -54,10 +54,10 @@ class Writers {
   }
 
   size_t lanes(const std::vector<size_t>& roots) const {
-    std::vector<size_t> all;
-    for (const size_t root : roots)
-      if (std::find(all.begin(), all.end(), beside_[root]) == all.end()) all.push_back(beside_[root]);
-    return all.size();
+    size_t count = 0;
+    for (auto root = roots.begin(); root != roots.end(); ++root)
+      count += std::none_of(roots.begin(), root, [&](size_t earlier) { return beside_[earlier] == beside_[*root]; }) ? 1 : 0;
+    return count;
   }
 
   const std::string& function(size_t root) const { return context_.program.functions[roots_.roots[root].function].name; }

@@ -52,7 +52,7 @@ def test_the_sample_of_the_contract(monkeypatch):
 def test_the_motor_says_whether_it_is_ideal():
     """As the card of the page and `ipos run --why` do: a nameplate is a motor of its own."""
     begin = '[[station]]\nname = "a"\nunit = "mdxb"\n'
-    plate = '[station.motor]\npower = "1.5 kW"\nvoltage = "400 V"\nfrequency = "50 Hz"\ncurrent = "3.6 A"\nspeed = "1400 rpm"\ncos_phi = 0.79\n'
+    plate = '[station.motor]\npower = "1.5 kW"\nvoltage = "400 V"\nfrequency = "50 Hz"\ncurrent = "3.6 A"\nspeed = "1400 rpm"\ncos_phi = 0.79\ninertia = "24 kgcm2"\n'
     for more, ideal in (("", True), (plate, False), ('control = "real"\n', True), ('[station.load]\ntorque = "2 Nm"\n', True)):
         with ipos.Plant(text=begin + more) as plant:
             assert plant["a"].ideal_motor is ideal, more
