@@ -202,6 +202,7 @@ void Plant::resolve_expectations(std::vector<PlantError>& errors) {
   }
   std::stable_sort(due_.begin(), due_.end(),
                    [](const Due& a, const Due& b) { return a.expectation->at < b.expectation->at; });
+  results_.reserve(due_.size());
 }
 
 void Plant::add_observer(CanObserver& observer) {

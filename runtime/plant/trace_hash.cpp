@@ -117,8 +117,10 @@ std::string TraceHash::text() const { return fmt::format("{:016x}", value()); }
 
 void TraceHash::on_trace(const Bus& bus, std::span<const uint64_t> facts) {
   const auto named = std::find_if(names_.begin(), names_.end(), [&](const Named& one) { return one.bus == &bus; });
-  if (islands_.size() == 1) {
-    hash_.add(named->name);
+  // A line tells what stands already while this begins to hear it.
+  const bool begins = named == names_.end();
+  if (islands_.size() == 1 || begins) {
+    if (!begins) hash_.add(named->name);
     for (const uint64_t fact : facts) hash_.add(fact);
     return;
   }

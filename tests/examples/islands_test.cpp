@@ -175,6 +175,18 @@ TEST(Islands, OfPlantsOfChance) {
   }
 }
 
+// A line that has something to tell before the first event: a station at another rate.
+TEST(Islands, WhereAStationTakesNoPart) {
+  const TemporaryFolder folder;
+  const auto line = [](const char* name) {
+    return fmt::format("[[bus]]\nname = '{0}'\nkind = 'can'\nbaud = 125000\n[[station]]\nname = 'of{0}'\nunit = 'mdxb'\nsbus = '{0}'\n", name);
+  };
+  const PlantInput one = read(folder.write("one.toml", line("a"))), two = read(folder.write("two.toml", line("a") + line("b")));
+  EXPECT_EQ(islands_of(two, 2), 2U);
+  expect_same(one, "one line");
+  expect_same(two, "two lines");
+}
+
 // Who is on two lines joins them: by both SBuses of a unit, as a gateway, by SBus and RS-485. Who is on no line is an island with the others.
 TEST(Islands, AreWhatNobodyJoins) {
   const TemporaryFolder folder;

@@ -44,12 +44,12 @@ TEST_P(Allocations, ARunningPlantMakesNone) {
 }
 
 std::string name_of(const ::testing::TestParamInfo<Row>& row) {
-  return row.param.folder;
+  return row.param.bus;
 }
 INSTANTIATE_TEST_SUITE_P(Buses, Allocations,
                          ::testing::Values(Row{"SBus", "scom", "scom.toml", ms(2000)}, Row{"CANopen", "canopen", "canopen.toml", ms(2000)},
                                            Row{"PROFIBUS", "profibus", "profibus.toml", ms(1300)},
-                                           Row{"RS-485", "movilink-rs485", "rs485.toml", ms(2000)},
+                                           Row{"RS485", "movilink-rs485", "rs485.toml", ms(2000)},
                                            Row{"gateway", "gateway", "gateway.toml", ms(3000)}),
                          name_of);
 
