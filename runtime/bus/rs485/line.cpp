@@ -14,6 +14,8 @@ namespace {
 
 // Longest time for which a receiver may still look at an ended transmission: a character of the slow rate.
 constexpr Tick kMemory = 2 * kCharacterBits * ticks_per_bit(kSerialBaudRates[0]);
+// Memory of bits that is kept for the next telegrams. Who sends bits of its own, as a real port does, brings more than is used.
+constexpr size_t kMostSpare = 16;
 
 }  // namespace
 
@@ -120,7 +122,7 @@ void Rs485Line::forget_old() {
   const Tick now = tick_from(queue_.now());
   std::erase_if(transmissions_, [&](Transmission& t) {
     if (t.end() + kMemory >= now) return false;
-    spare_.push_back(std::move(t.bits));
+    if (spare_.size() < kMostSpare) spare_.push_back(std::move(t.bits));
     return true;
   });
 }

@@ -1,6 +1,5 @@
-// Once everything runs, a plant takes no memory of the heap: over SBus, CANopen and PROFIBUS-DP. (A telegram over RS-485 takes
-// one piece for its bits, a unit of FMS some.) The plants are examples; nothing happens in the second that is counted but
-// what happens in every second.
+// Once everything runs, a plant takes no memory of the heap: over SBus, CANopen, PROFIBUS-DP, RS-485 and a gateway. (Units of FMS
+// take some.) The plants are examples; nothing happens in the second that is counted but what happens in every second.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -8,6 +7,8 @@
 #include <iterator>
 #include <string>
 
+#include "runtime/bus/rs485/levels.hpp"
+#include "runtime/bus/rs485/line.hpp"
 #include "tests/harness/allocations.hpp"
 #include "tests/runtime/plant/plant_rig.hpp"
 
@@ -52,6 +53,27 @@ INSTANTIATE_TEST_SUITE_P(Buses, Allocations,
                                            Row{"RS485", "movilink-rs485", "rs485.toml", ms(2000)},
                                            Row{"gateway", "gateway", "gateway.toml", ms(3000)}),
                          name_of);
+
+// As what comes in at a real port: each character is a transmission of bits that were made elsewhere.
+TEST(AllocationsOfALine, KeepLittleOfBitsFromOutside) {
+  struct Silent final : runtime::SerialNode {
+    void on_character(runtime::Time, const runtime::Character&) override {}
+    void on_sent(runtime::Time) override {}
+  } sender, hearer;
+  runtime::EventQueue queue;
+  runtime::Rs485Line line(queue, 0, "line", 9600);
+  const runtime::NodeId node = line.attach("sender", 9600, sender);
+  line.attach("hearer", 9600, hearer);
+  constexpr size_t kBegin = 100;
+  std::vector<std::vector<bool>> characters(10 * kBegin, runtime::wire_bits(std::vector<uint8_t>{0x55}));
+  size_t before = 0;
+  for (size_t n = 0; n < characters.size(); ++n) {
+    if (n == kBegin) before = allocations();
+    ASSERT_TRUE(line.send_bits(node, std::move(characters[n])));
+    queue.run_until(queue.now() + ms(2));
+  }
+  EXPECT_EQ(allocations() - before, 0U);
+}
 
 }  // namespace
 }  // namespace ipos::tests
