@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -13,7 +14,10 @@ namespace ipos::runtime {
 
 struct Crew::Hands {
   explicit Hands(size_t others) {
-    for (size_t n = 0; n < others; ++n) threads.emplace_back([this] { serve(); });
+    try {
+      for (size_t n = 0; n < others; ++n) threads.emplace_back([this] { serve(); });
+    } catch (const std::system_error&) {  // there are no more, or none as in a browser: the others do their work
+    }
   }
   ~Hands() {
     {

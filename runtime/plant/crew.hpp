@@ -9,7 +9,7 @@ namespace ipos::runtime {
 
 class Crew {
  public:
-  // The caller of share() is one of `threads`; the others start with the first work.
+  // The caller of share() is one of `threads`; the others start with the first work, as many of them as the system gives.
   explicit Crew(unsigned threads);
   ~Crew();
 
