@@ -54,10 +54,10 @@ class Maps {
         return symbol.count == 1 ? symbol.name : fmt::format("{}[{}]", symbol.name, variable - symbol.variable);
     return fmt::format("H{}", variable);
   }
-  std::string root_name(const Root& root) const {
-    if (root.entry == 0) return "task 1";
-    if (root.how == Root::How::Task) return fmt::format("task {}", root.task);
-    return fmt::format("interrupt {}", function_name(root.entry));
+  Runner runner(const Root& root) const {
+    if (root.entry == 0) return {1};
+    if (root.how == Root::How::Task) return {root.task};
+    return {0, function_name(root.entry)};
   }
 
   std::vector<CallMap> calls() const {
@@ -65,18 +65,16 @@ class Maps {
     for (const size_t entry : graph_.entries)
       for (const size_t command : graph_.function_at(entry)) {
         const Command& code = graph_.commands[command];
-        if (code.calls && code.label != kNone) add(all, {function_name(entry), function_name(code.label), line_of(command), "calls"});
+        if (code.calls && code.label != kNone) add(all, {function_name(entry), function_name(code.label), line_of(command)});
         if (const auto started = graph_.started_by(command))
           add(all, {function_name(entry), function_name(started->entry), line_of(command),
-                    started->how == Root::How::Task ? fmt::format("starts as task {}", started->task) : "installs as an interrupt"});
+                    started->how == Root::How::Task ? CallMap::How::Starts : CallMap::How::Installs, started->task});
       }
     std::stable_sort(all.begin(), all.end(), [](const CallMap& a, const CallMap& b) { return a.line < b.line; });
     return all;
   }
   static void add(std::vector<CallMap>& all, CallMap call) {
-    for (const CallMap& known : all)
-      if (known.from == call.from && known.to == call.to && known.line == call.line && known.how == call.how) return;
-    all.push_back(std::move(call));
+    if (std::find(all.begin(), all.end(), call) == all.end()) all.push_back(std::move(call));
   }
 
   std::vector<TelegramMap> telegrams() const {
@@ -110,7 +108,7 @@ class Maps {
   // --- who reads and writes
 
   struct Use {
-    std::vector<std::string> read, written;
+    std::vector<Runner> read, written;
   };
 
   // The command takes only its place, whatever was there.
@@ -138,12 +136,12 @@ class Maps {
     return all;
   }
 
-  void note(const std::vector<Span>& spans, const std::string& who, std::vector<std::string> Use::*list) {
+  void note(const std::vector<Span>& spans, const Runner& who, std::vector<Runner> Use::*list) {
     for (const Span& span : spans) {
       if (span.last - span.first >= static_cast<int64_t>(kMostOfAPointer)) continue;
       for (int64_t v = std::max<int64_t>(0, span.first); v <= span.last && v < variables_; ++v) {
-        std::vector<std::string>& names = uses_[static_cast<uint32_t>(v)].*list;
-        if (std::find(names.begin(), names.end(), who) == names.end()) names.push_back(who);
+        std::vector<Runner>& all = uses_[static_cast<uint32_t>(v)].*list;
+        if (std::find(all.begin(), all.end(), who) == all.end()) all.push_back(who);
       }
     }
   }
@@ -151,17 +149,17 @@ class Maps {
   void find_uses() {
     for (const Root& root : graph_.roots)
       for (const size_t command : graph_.reached_from(root.entry)) {
-        note(read_by(command), root_name(root), &Use::read);
-        note(values_.written_by(command), root_name(root), &Use::written);
+        note(read_by(command), runner(root), &Use::read);
+        note(values_.written_by(command), runner(root), &Use::written);
       }
   }
 
   std::vector<VariableMap> variables() const {
     std::vector<VariableMap> all;
     std::set<uint32_t> named;
-    const auto merge = [](std::vector<std::string>& to, const std::vector<std::string>& from) {
-      for (const std::string& name : from)
-        if (std::find(to.begin(), to.end(), name) == to.end()) to.push_back(name);
+    const auto merge = [](std::vector<Runner>& to, const std::vector<Runner>& from) {
+      for (const Runner& one : from)
+        if (std::find(to.begin(), to.end(), one) == to.end()) to.push_back(one);
     };
     for (const vm::Symbol& symbol : image_.symbols) {
       VariableMap& row = all.emplace_back(VariableMap{symbol.name, symbol.variable, symbol.count, symbol.variable < kKept, {}, {}});
@@ -242,6 +240,17 @@ class Maps {
 };
 
 }  // namespace
+
+std::string Runner::text() const { return task == 0 ? fmt::format("interrupt {}", routine) : fmt::format("task {}", task); }
+
+std::string CallMap::text() const {
+  switch (how) {
+    case How::Starts: return fmt::format("starts as task {}", task);
+    case How::Installs: return "installs as an interrupt";
+    case How::Calls: break;
+  }
+  return "calls";
+}
 
 ProgramMaps program_maps(const vm::Image& image, uint32_t variables) {
   if (image.code.empty()) return {};

@@ -11,19 +11,30 @@
 
 namespace ipos::compiler {
 
+// Who executes a command: a task, or an interrupt routine.
+struct Runner {
+  int task = 0;            // 1 to 3; 0: an interrupt
+  std::string routine{};  // of an interrupt
+  std::string text() const;  // "task 1", "interrupt Clock"
+  bool operator==(const Runner&) const = default;
+};
+
 struct VariableMap {
   std::string name;  // as the program calls it; empty: by its number alone
   uint16_t variable = 0;
   uint16_t count = 1;
   bool kept = false;               // H0 to H127 outlast the power (non-volatile)
-  std::vector<std::string> read;   // "task 1", "interrupt Clock"; in order
-  std::vector<std::string> written;
+  std::vector<Runner> read, written;  // in order
 };
 
 struct CallMap {
+  enum class How : uint8_t { Calls, Starts, Installs };
   std::string from, to;
   uint32_t line = 0;
-  std::string how;  // "calls", "starts as task 2", "installs as an interrupt"
+  How how = How::Calls;
+  int task = 0;  // as which it starts it
+  std::string text() const;  // "calls", "starts as task 2", "installs as an interrupt"
+  bool operator==(const CallMap&) const = default;
 };
 
 // Of a command that sets up an object; a member is there where the code gives it a constant.

@@ -20,6 +20,12 @@ ProgramMaps maps(const std::string& text) {
   return made.image ? compiler::program_maps(*made.image, options.unit->variables) : ProgramMaps{};
 }
 
+Names texts(const std::vector<compiler::Runner>& runners) {
+  Names all;
+  for (const compiler::Runner& one : runners) all.push_back(one.text());
+  return all;
+}
+
 const compiler::VariableMap& variable(const ProgramMaps& maps, const std::string& name) {
   const auto found = std::find_if(maps.variables.begin(), maps.variables.end(), [&](const auto& row) { return row.name == name; });
   EXPECT_NE(found, maps.variables.end()) << name;
@@ -32,18 +38,18 @@ TEST(Maps, WhoReadsAndWrites) {
       "Clock() { c++; }\n"
       "Side() { while (1) { b = a; n[2] = 5; } }\n"
       "main() { _SetInterrupt(SI_TIMER0, Clock); _SetTask2(T2_START, Side); while (1) { a = 3; kept = kept + b; for (i = 0; i < 4; i++) n[i] = i; H300 = 1; } }\n");
-  EXPECT_EQ(variable(all, "a").read, (Names{"task 2"}));
-  EXPECT_EQ(variable(all, "a").written, (Names{"task 1"}));
-  EXPECT_EQ(variable(all, "b").read, (Names{"task 1"}));
-  EXPECT_EQ(variable(all, "b").written, (Names{"task 2"}));
-  EXPECT_EQ(variable(all, "c").written, (Names{"interrupt Clock"}));
-  EXPECT_EQ(variable(all, "n").written, (Names{"task 1", "task 2"}));  // by an index that stays in it
+  EXPECT_EQ(texts(variable(all, "a").read), (Names{"task 2"}));
+  EXPECT_EQ(texts(variable(all, "a").written), (Names{"task 1"}));
+  EXPECT_EQ(texts(variable(all, "b").read), (Names{"task 1"}));
+  EXPECT_EQ(texts(variable(all, "b").written), (Names{"task 2"}));
+  EXPECT_EQ(texts(variable(all, "c").written), (Names{"interrupt Clock"}));
+  EXPECT_EQ(texts(variable(all, "n").written), (Names{"task 1", "task 2"}));  // by an index that stays in it
   EXPECT_EQ(variable(all, "n").count, 4);
   EXPECT_TRUE(variable(all, "kept").kept);
   EXPECT_FALSE(variable(all, "a").kept);
   const auto numbered = std::find_if(all.variables.begin(), all.variables.end(), [](const auto& row) { return row.variable == 300; });
   ASSERT_NE(numbered, all.variables.end());
-  EXPECT_EQ(numbered->written, (Names{"task 1"}));
+  EXPECT_EQ(texts(numbered->written), (Names{"task 1"}));
   EXPECT_EQ(numbered->name, "");
 }
 
@@ -53,7 +59,7 @@ TEST(Maps, WhoCallsWhom) {
       "main()\n{\n  Inner();\n  _SetInterrupt(SI_TIMER0, Clock);\n  _SetTask2(T2_START, Side);\n  _SetTask(1, Side);\n  while (1) ;\n}\n");
   const auto has = [&](const std::string& from, const std::string& to, const std::string& how, uint32_t line) {
     return std::any_of(all.calls.begin(), all.calls.end(), [&](const compiler::CallMap& call) {
-      return call.from == from && call.to == to && call.how == how && call.line == line;
+      return call.from == from && call.to == to && call.text() == how && call.line == line;
     });
   };
   EXPECT_TRUE(has("main", "Inner", "calls", 8));

@@ -16,7 +16,14 @@ using Json = nlohmann::ordered_json;
 
 Json or_null(const std::optional<int64_t>& value) { return value ? Json(*value) : Json(); }
 std::string or_dash(const std::optional<int64_t>& value) { return value ? fmt::format("{}", *value) : "-"; }
-std::string list(const std::vector<std::string>& names) { return names.empty() ? "-" : fmt::format("{}", fmt::join(names, ", ")); }
+std::vector<std::string> texts(const std::vector<compiler::Runner>& runners) {
+  std::vector<std::string> all;
+  for (const compiler::Runner& one : runners) all.push_back(one.text());
+  return all;
+}
+std::string list(const std::vector<compiler::Runner>& runners) {
+  return runners.empty() ? "-" : fmt::format("{}", fmt::join(texts(runners), ", "));
+}
 
 std::string where(const compiler::VariableMap& row) {
   return row.count == 1 ? fmt::format("H{}", row.variable) : fmt::format("H{}..{}", row.variable, row.variable + row.count - 1);
@@ -30,7 +37,7 @@ std::string text_of(const ProgramMaps& maps) {
     out += fmt::format("  {:<10} {:<{}}  {:<4}  read by {}; written by {}\n", where(row), row.name, width, row.kept ? "kept" : "", list(row.read),
                        list(row.written));
   out += "calls\n";
-  for (const auto& call : maps.calls) out += fmt::format("  {} {} {} (line {})\n", call.from, call.how, call.to, call.line);
+  for (const auto& call : maps.calls) out += fmt::format("  {} {} {} (line {})\n", call.from, call.text(), call.to, call.line);
   out += "telegrams\n";
   for (const auto& telegram : maps.telegrams)
     out += fmt::format("  line {}: {}, object {}, cycle {} ms, offset {} ms, format {}, data from H{}\n", telegram.line, telegram.kind,
@@ -46,9 +53,9 @@ std::string text_of(const ProgramMaps& maps) {
 Json json_of(const std::string& station, const ProgramMaps& maps, Json all) {
   for (const auto& row : maps.variables)
     all["variables"].push_back({{"station", station}, {"name", row.name}, {"index", row.variable}, {"count", row.count}, {"kept", row.kept},
-                                {"read", row.read}, {"written", row.written}});
+                                {"read", texts(row.read)}, {"written", texts(row.written)}});
   for (const auto& call : maps.calls)
-    all["calls"].push_back({{"station", station}, {"from", call.from}, {"to", call.to}, {"line", call.line}, {"how", call.how}});
+    all["calls"].push_back({{"station", station}, {"from", call.from}, {"to", call.to}, {"line", call.line}, {"how", call.text()}});
   for (const auto& telegram : maps.telegrams)
     all["telegrams"].push_back({{"station", station}, {"line", telegram.line}, {"kind", telegram.kind}, {"object", or_null(telegram.object)},
                                 {"cycle_ms", or_null(telegram.cycle_ms)}, {"offset_ms", or_null(telegram.offset_ms)},
@@ -66,7 +73,7 @@ std::string dot_of(const std::string& station, const ProgramMaps& maps, size_t n
   std::string out = fmt::format("  subgraph cluster_{}_calls {{\n    label=\"{}: calls\"\n", number, station);
   for (const auto& call : maps.calls)
     out += fmt::format("    \"{0}.{1}\" [label=\"{1}\"]\n    \"{0}.{2}\" [label=\"{2}\"]\n    \"{0}.{1}\" -> \"{0}.{2}\" [label=\"{3}\"{4}]\n", station,
-                       call.from, call.to, call.how == "calls" ? "" : call.how, call.how == "calls" ? "" : " style=dashed");
+                       call.from, call.to, call.how == compiler::CallMap::How::Calls ? "" : call.text(), call.how == compiler::CallMap::How::Calls ? "" : " style=dashed");
   out += "  }\n";
   for (const auto& map : maps.states) {
     out += fmt::format("  subgraph \"cluster_{}_{}\" {{\n    label=\"{}: {}\"\n", number, map.name, station, map.name);

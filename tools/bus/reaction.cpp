@@ -42,11 +42,11 @@ class ProgramTurns {
         maps_(compiler::program_maps(*station.image(), station.config().unit->variables)),
         timings_(compiler::function_timings(*station.image(), station.config().unit->variables, station.drive().rates().commands)) {}
 
-  Turn of(uint32_t first, uint32_t count, std::vector<std::string> compiler::VariableMap::*who) const {
+  Turn of(uint32_t first, uint32_t count, std::vector<compiler::Runner> compiler::VariableMap::*who) const {
     Turn worst;
     for (const compiler::VariableMap& row : maps_.variables) {
       if (row.variable + uint32_t{row.count} <= first || row.variable >= first + count) continue;
-      for (const std::string& name : row.*who) add(worst, name);
+      for (const compiler::Runner& one : row.*who) add(worst, one);
     }
     if (worst.task != 0 && worst.because.empty()) worst.because = in_between();
     if (!worst.because.empty()) worst.ms.reset();
@@ -54,22 +54,22 @@ class ProgramTurns {
   }
 
  private:
-  void add(Turn& worst, const std::string& who) const {
-    if (!who.starts_with("task ")) {
+  void add(Turn& worst, const compiler::Runner& who) const {
+    const int task = who.task;
+    if (task == 0) {
       worst.task = std::max(worst.task, 1);
-      worst.because = fmt::format("{} of {} has no loop", who, station_.config().name);
+      worst.because = fmt::format("{} of {} has no loop", who.text(), station_.config().name);
       return;
     }
-    const int task = who.back() - '0';
     if (worst.task == 0) worst.task = task;
     if (task != 1 && task_commands(task) > 1 && worst.because.empty())
-      worst.because = fmt::format("{} of {} is started or stopped at several places", who, station_.config().name);
+      worst.because = fmt::format("{} of {} is started or stopped at several places", who.text(), station_.config().name);
     for (const std::string& function : functions_of(task)) {
       const auto row = std::find_if(timings_.begin(), timings_.end(), [&](const auto& one) { return one.name == function; });
       if (row == timings_.end()) continue;
       if (row->kind != compiler::FunctionTiming::Kind::Turn || !row->ms) {
         if (worst.because.empty())
-          worst.because = fmt::format("{} of {}: {}", who, station_.config().name,
+          worst.because = fmt::format("{} of {}: {}", who.text(), station_.config().name,
                                       row->kind == compiler::FunctionTiming::Kind::Turn || !row->because.empty()
                                           ? row->because
                                           : fmt::format("'{}' has no endless loop", function));
@@ -85,7 +85,7 @@ class ProgramTurns {
     if (task == 1) return {"main"};
     std::vector<std::string> names;
     for (const compiler::CallMap& call : maps_.calls)
-      if (call.how == fmt::format("starts as task {}", task)) names.push_back(call.to);
+      if (call.how == compiler::CallMap::How::Starts && call.task == task) names.push_back(call.to);
     return names;
   }
 
@@ -104,7 +104,7 @@ class ProgramTurns {
 
   std::string in_between() const {
     for (const compiler::CallMap& call : maps_.calls)
-      if (call.how == "installs as an interrupt")
+      if (call.how == compiler::CallMap::How::Installs)
         return fmt::format("the interrupt routine {} of {} may come in between", call.to, station_.config().name);
     return {};
   }
