@@ -20,7 +20,7 @@ ipos_layer(commands FOLDERS runtime/commands
 ipos_batches(ipos_commands SIZE 20)
 ipos_layer(unit FOLDERS runtime/unit
   SOURCES unit/program_image.cpp unit/unit_interface.cpp unit/unit.cpp unit/unit_reports.cpp unit/unit_power.cpp unit/unit_program.cpp
-          unit/program_reach.cpp unit/many_ticks.cpp
+          unit/program_reach.cpp unit/moving_ticks.cpp unit/many_ticks.cpp
   USES journal services kept commands bus_movilink scom drive vm image pace stdlib
   LIBS fmt::fmt)
-ipos_batches(ipos_unit SIZE 20 HOT unit/unit.cpp unit/program_reach.cpp unit/many_ticks.cpp)
+ipos_batches(ipos_unit SIZE 20 HOT unit/unit.cpp unit/program_reach.cpp unit/moving_ticks.cpp unit/many_ticks.cpp)

@@ -16,6 +16,10 @@ class Backoff {
     at_ = next + pause_ * kMillisecond;
   }
   void succeed() { pause_ = 1; }
+  // Ticks from `first` on in which it is not due.
+  uint32_t pause_from(Time first) const {
+    return at_ <= first ? 0 : static_cast<uint32_t>((at_ - first + kMillisecond - 1) / kMillisecond);
+  }
   // From the next tick on; the pauses go on from where they are.
   void try_now() { at_ = 0; }
 

@@ -254,7 +254,7 @@ inline int32_t Positioner::speed_order() const {
 [[gnu::always_inline]] inline int32_t Positioner::lead() {
   profile_.tick();
   keep_in_range();
-  if (settings_.lag_window > 0 && magnitude(lag_) > settings_.lag_window) report(PositioningEvent::LagError);
+  if (lags_too_far()) report(PositioningEvent::LagError);
   return speed_order();
 }
 

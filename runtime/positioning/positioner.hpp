@@ -99,6 +99,9 @@ class Positioner {
   // A reference travel has given the motor encoder another count, which the axis must take over.
   std::optional<int32_t> take_motor_counter() { return std::exchange(motor_counter_, std::nullopt); }
   bool has_events() const { return events_.which.any(); }
+  bool lags_too_far() const {
+    return settings_.lag_window > 0 && (lag_ < 0 ? -int64_t{lag_} : int64_t{lag_}) > settings_.lag_window;
+  }
   // What has been reported since the last call, and the target that was ordered by then; nothing: there was none, as
   // the axis stopped, was referenced or followed a master.
   struct Events {

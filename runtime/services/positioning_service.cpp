@@ -220,18 +220,32 @@ inline bool PositioningService::written(std::span<const int32_t> h) const {
          mirrors_written(h);
 }
 
+[[gnu::always_inline]] inline void PositioningService::lead() {
+  if (positioner_.idles()) {
+    positioner_.idle();
+    ordered_.speed = drive_.speed();
+  } else {
+    ordered_.speed = positioner_.go_on();
+  }
+}
+
+const PositionControl& PositioningService::go_on(uint32_t syncs) {
+  syncs_ = syncs;
+  lead();
+  return ordered_;
+}
+
+bool PositioningService::goes_on(std::span<const int32_t> h) const {
+  return followed_ && *followed_ == Followed{drive_.changes(), changes_} && !positioner_.lags_too_far() && !written(h);
+}
+
 // If no input of an order has changed, a travel goes on with its plan, and
 // who idles goes on to do so.
 const PositionControl& PositioningService::order(Time now, std::span<int32_t> h, uint32_t syncs) {
   if (!followed_ || !(*followed_ == Followed{drive_.changes(), changes_}) || written(h))
     return order_anew(now, h, syncs);
   syncs_ = syncs;
-  if (positioner_.idles()) {
-    positioner_.idle();
-    ordered_.speed = drive_.speed();
-    return ordered_;
-  }
-  ordered_.speed = positioner_.go_on();
+  lead();
   if (positioner_.has_events()) {
     report_events(now);
     followed_.reset();
@@ -324,7 +338,6 @@ void PositioningService::advance(std::span<int32_t> h, uint32_t syncs, int32_t b
 }
 
 void PositioningService::show(Time now, std::span<int32_t> h) {
-  positioner_.observe(drive_.position());
   show_target_positions(h);
   show_bits(h);
   h[kModActPos] = 0;

@@ -29,8 +29,22 @@ class PositioningService {
 
   // Before the drive's tick: what the program wrote, what is to be done. `syncs`: sync telegrams so far.
   const PositionControl& order(Time now, std::span<int32_t> h, uint32_t syncs);
-  // After it: the system variables of positioning, and the extended cams.
+  // After it: where the axis is now.
+  void observe() { positioner_.observe(drive_.position()); }
+  // And then the system variables of positioning, and the extended cams.
   void show(Time now, std::span<int32_t> h);
+
+  // --- ticks in which the axis does nothing but move ---
+  // The next order() only goes on, and has nothing to report.
+  bool goes_on(std::span<const int32_t> h) const;
+  // It is on its way to a target, or holds it: no target moves.
+  bool leads() const { return !positioner_.idles(); }
+  // order() where goes_on() is true, or was before ticks that had_only_moved(), and nobody has written since.
+  const PositionControl& go_on(uint32_t syncs);
+  // After observe(): no bit has changed, and the next tick has nothing to report.
+  bool had_only_moved() const {
+    return positioner_.in_position() == ordered_.in_position && !positioner_.lags_too_far();
+  }
 
   // Looks at no variable but system variables: no cam controller runs, no master is followed.
   bool reads_system_variables_only() const { return settings_.technology_function != kIsync && !cams_run_; }
@@ -95,6 +109,7 @@ class PositioningService {
   }
   void read_changed_settings();
   bool written(std::span<const int32_t> h) const;
+  void lead();
   const PositionControl& order_anew(Time now, std::span<int32_t> h, uint32_t syncs);
   void note_probes();
   void run_cams(Time now, std::span<int32_t> h);

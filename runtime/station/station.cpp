@@ -222,8 +222,10 @@ bool Station::tick(Time now) {
 }
 
 Ticks Station::advance(Time first, Ticks most) {
-  const Ticks executed = ticks_.advance(first, most);
-  if (ticks_.settled()) tell_watchers(first);  // one tick, with the program in full
+  if (watchers_.empty()) return ticks_.advance(first, most);
+  const bool moves = ticks_.mode() == ManyTicks::Mode::Moving;  // in each of them
+  const Ticks executed = ticks_.advance(first, moves ? 1 : most);
+  if (executed != 0 && ticks_.settled()) tell_watchers(first);  // one tick, with the program in full
   return executed;
 }
 

@@ -49,7 +49,8 @@ class Door final {
   bool variables_rest() const { return pacer_.rests(); }
   // After variables(): to write this one and the next.
   std::span<int32_t> variables_to_write(uint32_t first) const {
-    if (!pacer_.behind() || ticks_.minds(first)) return touch().variables();
+    const bool ahead = pacer_.behind() || ticks_.mode() == ManyTicks::Mode::Moving;  // it goes on with other variables
+    if (!ahead || ticks_.minds(first)) return touch().variables();
     return unit_.variables();
   }
   // To read what has waited, in its turn.

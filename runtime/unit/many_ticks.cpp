@@ -14,6 +14,8 @@ namespace {
 // what the program can still do.
 constexpr uint32_t kSteadyPause = 32, kAheadPause = 64, kIdlePause = 32, kProgramPause = 1024,
                    kReachPause = 4096;
+// And to move where the tasks or the drive have more to do in the first tick.
+constexpr uint32_t kMovingPause = 64;
 
 }  // namespace
 
@@ -31,11 +33,43 @@ bool ManyTicks::tick(Time now) {
   mode_ = Mode::InFull;
   left_ = 0;
   touched_ = false;
-  if (steady_backoff_.due(now))
+  tick_in_full(now);
+  if (mode_ == Mode::InFull) begin_moving(now + kMillisecond);
+  return true;
+}
+
+// An axis on its way to a target is not steady.
+void ManyTicks::tick_in_full(Time now) {
+  if (moving_.has_begun())
+    moving_.finish(now);
+  else if (steady_backoff_.due(now) && (unit_.drive().standing() || !unit_.is_led()))
     compare_tick(now);
   else
     unit_.tick(now);
-  return true;
+}
+
+// Where nothing leads the axis it may come to turn evenly: that is looked at now and then.
+Ticks ManyTicks::begin_moving(Time first) {
+  know_program();
+  mode_ = Mode::InFull;
+  left_ = 0;
+  if (!moving_backoff_.due(first) || !moving_.possible(reach_)) return 0;
+  left_ = unit_.is_led() ? kLatest : std::min(kLatest, steady_backoff_.pause_from(first));
+  if (left_ != 0) mode_ = Mode::Moving;
+  return left_;
+}
+
+Ticks ManyTicks::move(Time first, Ticks most) {
+  const Ticks done = moving_.advance(first, most, reach_);
+  left_ -= done;
+  if (done == most) {
+    moving_backoff_.succeed();
+    return done;
+  }
+  mode_ = Mode::InFull;
+  left_ = 0;
+  if (moving_.in_vain()) moving_backoff_.fail(first + kMillisecond, kMovingPause);
+  return done;
 }
 
 ManyTicks::Before::Before(const Unit& unit) : drive(unit.drive().moment()) {
@@ -95,6 +129,7 @@ bool ManyTicks::must_look() {
 }
 
 Ticks ManyTicks::find_horizon(Time first) {
+  if (mode_ == Mode::Moving) return begin_moving(first);
   settle();
   const bool touched = touched_;
   if (!is_still_steady())
@@ -150,9 +185,11 @@ bool ManyTicks::can_run_ahead() {
 
 Ticks ManyTicks::advance(Time first, Ticks most) {
   assert(most <= left_);
+  if (mode_ == Mode::Moving) return move(first, most);
   if (mode_ == Mode::Steady) return steady_tick(first);
   if (mode_ == Mode::Ahead && unit_.machine() != nullptr) {
-    if (!unit_.machine()->run_ahead(rates_.commands, most, reach_.rollback)) {
+    vm::Machine::BeforeAhead before;
+    if (!unit_.machine()->run_ahead(rates_.commands, most, reach_.rollback, before)) {
       settle();
       ahead_backoff_.fail(first, kAheadPause);
       mode_ = Mode::Steady;
@@ -200,6 +237,10 @@ void ManyTicks::touched() {
   left_ = 0;
   idle_backoff_.try_now();
   if (std::exchange(touched_, true) || mode_ == Mode::InFull) return;
+  if (mode_ == Mode::Moving) {
+    mode_ = Mode::InFull;
+    return;
+  }
   if (is_quiet() && unit_.has_variables()) noted_.note(unit_.variables());
   mode_ = Mode::Steady;
 }
@@ -213,7 +254,7 @@ void ManyTicks::find_reach(Time first) {
   size_t count = 0;
   for (const VariableObjects* of_bus : unit_.objects())
     if (of_bus != nullptr) objects[count++] = of_bus;
-  reach_ = ProgramReach(*unit_.machine(), std::span(objects).first(count));
+  reach_ = ProgramReach(*unit_.machine(), std::span(objects).first(count), std::move(reach_.rollback));
   reach_backoff_.fail(first, kReachPause);
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "runtime/pace/backoff.hpp"
+#include "runtime/unit/moving_ticks.hpp"
 #include "runtime/unit/noted_variables.hpp"
 #include "runtime/unit/program_reach.hpp"
 #include "runtime/unit/unit.hpp"
@@ -18,6 +19,7 @@ class ManyTicks final {
   // How the next ticks are done.
   enum class Mode : uint8_t {
     InFull,  // each of them in full
+    Moving,  // the axis moves, and that is all: the tasks run for many ticks, and what is shown is that of the last one
     Steady,  // drive and positioning decide nothing; timers and tasks tick by tick
     Ahead,   // the tasks, too, run for many ticks, and drive and positioning follow when they are asked for
     Idle,    // and the tasks wait, have ended, or go round in a loop that leads nowhere
@@ -73,7 +75,10 @@ class ManyTicks final {
     uint32_t commands = 0;  // to positioning, so far
   };
 
+  void tick_in_full(Time now);
   void compare_tick(Time now);
+  Ticks begin_moving(Time first);
+  Ticks move(Time first, Ticks most);
   void know_program();
   bool is_steady(const Before& before);
   bool is_still_steady();
@@ -93,6 +98,7 @@ class ManyTicks final {
   }
 
   Unit& unit_;
+  MovingTicks moving_{unit_};
   Mode mode_ = Mode::InFull;
   Ticks left_ = 0;         // ticks that are done in this way
   Ticks pending_ = 0;      // ticks that drive and positioning, and idle tasks, are behind
@@ -104,7 +110,7 @@ class ManyTicks final {
   vm::Rates rates_;        // of Ahead and Idle
   vm::Idle idle_;          // of Idle
   ProgramReach reach_;
-  Backoff steady_backoff_, idle_backoff_, ahead_backoff_, reach_backoff_;
+  Backoff steady_backoff_, idle_backoff_, ahead_backoff_, reach_backoff_, moving_backoff_;
   NotedVariables noted_;
 };
 

@@ -2,6 +2,7 @@
 #include "runtime/unit/program_reach.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "stdlib/system_variables.hpp"
 #include "vm/sched/outlook.hpp"
@@ -12,6 +13,11 @@ namespace {
 using vm::Opcode;
 
 constexpr Opcode kBusCalls[] = {Opcode::Movlnk, Opcode::Scom, Opcode::ScomOn, Opcode::ScomState};
+
+// Not the target, and not what belongs to the modulo function.
+constexpr size_t kOfTravel[] = {
+    stdlib::system_variable("SetpointPos"), stdlib::system_variable("LagDistance"), stdlib::system_variable("ActPos_Abs"),
+    stdlib::system_variable("ActPos_Ext"), stdlib::system_variable("ActPos_Mot")};
 
 bool has_system_variables(uint32_t first, VariableFormat format) {
   for (uint32_t n = 0; n < format.variables(); ++n)
@@ -25,19 +31,25 @@ bool is_system_variable(size_t variable) {
   return variable >= stdlib::kFirstSystemVariable && variable <= stdlib::kLastSystemVariable;
 }
 
-ProgramReach::ProgramReach(const vm::Machine& machine, std::span<const VariableObjects* const> objects) {
+ProgramReach::ProgramReach(const vm::Machine& machine, std::span<const VariableObjects* const> objects,
+                           std::vector<uint16_t> memory)
+    : rollback(std::move(memory)) {
+  rollback.clear();
   const vm::Outlook outlook(machine);
   const auto reached = [&](Opcode call) { return outlook.reaches(call); };
   const auto used = [&](const stdlib::UsedVariable& variable) {
     return variable.use == stdlib::VariableUse::Moves && outlook.used()[variable.number];
   };
   mute = std::none_of(std::begin(kBusCalls), std::end(kBusCalls), reached);
-  quiet = !outlook.calls();
+  modest = true;
   for (size_t n = stdlib::kFirstSystemVariable; n <= stdlib::kLastSystemVariable; ++n)
-    quiet = quiet && !outlook.written()[n];
+    modest = modest && !outlook.written()[n];
+  quiet = modest && !outlook.calls();
   may_fault = outlook.may_fault();
   may_stop = outlook.may_stop();
   reads_position = std::any_of(std::begin(stdlib::kUsedVariables), std::end(stdlib::kUsedVariables), used);
+  reads_travel = std::any_of(std::begin(kOfTravel), std::end(kOfTravel),
+                             [&](size_t variable) { return outlook.used()[variable]; });
   sends_position = false;
   apart = outlook.apart();
   for (const VariableObjects* of_bus : objects) {
@@ -48,7 +60,7 @@ ProgramReach::ProgramReach(const vm::Machine& machine, std::span<const VariableO
       apart = apart && !has_system_variables(data, format);
     });
   }
-  if (!mute || !apart || !quiet) return;
+  if (!mute || !apart || !modest) return;
   for (size_t n = 0; n < outlook.written().size(); ++n)
     if (outlook.written()[n]) rollback.push_back(static_cast<uint16_t>(n));
   apart = apart && rollback.size() <= vm::Machine::kMostRollback;

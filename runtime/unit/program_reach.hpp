@@ -14,18 +14,21 @@ namespace ipos::runtime {
 
 struct ProgramReach {
   ProgramReach() = default;
-  // `objects`: of its buses. They stay as they are when the program is mute.
-  ProgramReach(const vm::Machine& machine, std::span<const VariableObjects* const> objects);
+  // `objects`: of its buses. They stay as they are when the program is mute. `memory` of an earlier one is used again.
+  ProgramReach(const vm::Machine& machine, std::span<const VariableObjects* const> objects,
+               std::vector<uint16_t> memory = {});
 
   bool mute = false;      // it does not call the bus
-  bool quiet = false;     // its commands write no system variable, and it asks the host for nothing
+  bool modest = false;    // its commands write no system variable, what the host does for it aside
+  bool quiet = false;     // modest, and it asks the host for nothing
   bool may_fault = true;  // it can cause a fault
   bool may_stop = true;   // it can do more than change variables in an endless loop
   // Its tasks use no variable that another one of them writes, and no telegram brings a system variable.
   bool apart = false;
   bool reads_position = true;  // a task uses variables that change with the position
+  bool reads_travel = true;    // or those of them that change while the axis is on its way to a target
   bool sends_position = true;  // a telegram has system variables
-  // Mute, quiet and apart: variables that are to be given back when running ahead fails.
+  // Mute, modest and apart: variables that are to be given back when running ahead fails.
   std::vector<uint16_t> rollback;
 };
 

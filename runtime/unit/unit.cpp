@@ -41,8 +41,17 @@ inline void Unit::show_variables(Time now) {
 }
 
 void Unit::begin(Time now) {
+  move(now);
+  begin_moved(now);
+}
+
+void Unit::move(Time now) {
   take_inputs();
   drive().tick(order_position(now));
+  if (positioning_) positioning_->observe();
+}
+
+void Unit::begin_moved(Time now) {
   const uint32_t changes = drive().changes();
   const bool drive_changed = changes != drive_changes_;
   drive_changes_ = changes;
@@ -58,6 +67,49 @@ void Unit::begin(Time now) {
   show_variables(now);
   count_timers();
   if (pid_) pid_->tick(variables());
+}
+
+bool Unit::can_only_move() const {
+  if (!inputs_.known() || synchronizes() || has_fresh_fault() || drive_.has_reasons()) return false;
+  if (!has_variables()) return !positioning_;
+  const std::span<const int32_t> h = variables();
+  if (!timers_.rest(h) || controls()) return false;
+  if (!positioning_) return true;
+  return positioning_->reads_system_variables_only() && positioning_->goes_on(h);
+}
+
+inline void Unit::move_on() {
+  static constexpr PositionControl kNone;
+  if (!positioning_) return drive().tick(kNone);
+  drive().tick(positioning_->go_on(drive_.syncs()));
+  positioning_->observe();
+}
+
+inline bool Unit::had_only_moved() const {
+  constexpr size_t kOutputLevel = stdlib::system_variable("OutputLevel");
+  if (drive().changes() != drive_changes_ || drive_.memory().has_changed()) return false;
+  if (has_variables() && variables()[kOutputLevel] != drive().outputs()) return false;
+  return !positioning_ || positioning_->had_only_moved();
+}
+
+Ticks Unit::move_on(Ticks most) {
+  for (Ticks done = 0; done != most; ++done) {
+    move_on();
+    if (!had_only_moved()) return done;
+  }
+  return most;
+}
+
+void Unit::count_moved(Time now, Ticks ticks) {
+  executed_ += ticks;
+  drive_.memory().set_time(now);
+}
+
+void Unit::show_moved(Time now) {
+  if (!has_variables()) return;
+  const std::span<int32_t> h = variables();
+  show_drive(drive(), drive_bits_, h);
+  if (positioning_) positioning_->show(now, h);
 }
 
 bool Unit::run_tasks() {

@@ -70,6 +70,22 @@ class Unit final {
   bool run_tasks();       // waits, interrupts, tasks
   void finish(Time now);  // what the program has written, its fault, the memory
 
+  // The parts of begin(), for milliseconds in which the unit does nothing but move (MovingTicks).
+  void move(Time now);         // inputs, positioning, drive
+  void begin_moved(Time now);  // the rest
+  // The next tick may be one in which the axis moves, and that is all. What is asked here stays so until somebody touches
+  // the unit.
+  bool can_only_move() const;
+  // Where that is so: move(), again and again, at most so often, as long as nothing else happens: of all that begin_moved()
+  // looks at and shows only positions change, and nobody needs to be told. Returns how often that was so; where it is less
+  // than `most`, one more tick has moved, in which more has happened.
+  Ticks move_on(Ticks most);
+  // What so many of them have left, the last one at `now`; and its variables.
+  void count_moved(Time now, Ticks ticks);
+  void show_moved(Time now);
+  // The axis follows a plan of positioning.
+  bool is_led() const { return positioning_ && positioning_->leads(); }
+
   // Its parts, for milliseconds in which drive and positioning decide nothing.
   void advance(Ticks ticks);
   void count_timers();
@@ -135,6 +151,8 @@ class Unit final {
   uint32_t source_line(uint32_t address) const;  // 12, or 0
 
  private:
+  void move_on();
+  bool had_only_moved() const;
   bool runs_image() const { return image_ && program_ && std::ranges::equal(program_->code(), image_->code); }
   void take_inputs();
   const PositionControl& order_position(Time now);

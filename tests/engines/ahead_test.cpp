@@ -190,6 +190,45 @@ TEST_F(Ahead, WhatElseComesInBetweenIsForTheTurns) {
   EXPECT_GT(refused, 20);
 }
 
+// What has run ahead can be taken back: the machine is what it was, waits and calls included.
+TEST_F(Ahead, CanBeTakenBack) {
+  const std::string source =
+      "f() { H21 = H21 + H90; }\n"
+      "t2() { while (1) { f(); f(); } }\n"
+      "t3() { while (1) { H30 = H30 + 1; _Wait(40); } }\n"
+      "main() { _SetTask2(T2_START, t2); _SetTask(T2_START, t3); while (1) H10 = H10 * 3 + 1; }";
+  std::mt19937 random(13);
+  vm::Machine turns = machine(source);
+  ticks(turns, 3);
+  vm::Machine ahead = turns;
+  const std::vector<uint16_t> numbers = written(ahead);
+  int taken_back = 0;
+  for (int round = 0; round < 300; ++round) {
+    const uint32_t most = ahead.waits_on();
+    if (most < 2) {
+      for (vm::Machine* m : {&turns, &ahead}) ticks(*m, 2);
+      continue;
+    }
+    const auto count = static_cast<uint32_t>(1 + random() % std::min(most, 12U));
+    const vm::Machine before = ahead;
+    vm::Machine::BeforeAhead stand;
+    ASSERT_TRUE(ahead.run_ahead(rates_.commands, count, numbers, stand));
+    EXPECT_FALSE(ahead.waits_on() == most) << "the waits go on";
+    ahead.take_back(numbers, stand);
+    ASSERT_NO_FATAL_FAILURE(expect_same(ahead, before)) << "in round " << round;
+    ++taken_back;
+    ticks(turns, count);
+    ticks(ahead, count);
+    ASSERT_NO_FATAL_FAILURE(expect_same(ahead, turns)) << "after round " << round;
+    for (vm::Machine* m : {&turns, &ahead}) m->variables()[90] = round * 41;
+  }
+  EXPECT_GT(taken_back, 100);
+  // An end of a wait is for the turns.
+  ASSERT_LT(ahead.waits_on(), 40U);
+  vm::Machine::BeforeAhead stand;
+  EXPECT_FALSE(ahead.run_ahead(rates_.commands, ahead.waits_on() + 1, numbers, stand));
+}
+
 TEST_F(Ahead, NotWithInterruptsAndNotByTheReference) {
   vm::Machine m =
       machine("timer() { H2 = 1; } main() { _SetInterrupt(SI_TIMER0, timer); while (1) H1 = H1 + 1; }");

@@ -12,31 +12,6 @@
 
 namespace ipos::vm {
 
-namespace {
-
-// What the fast engine changes of a context.
-struct Stand {
-  uint32_t pc;
-  uint8_t depth;
-  uint64_t commands;
-  std::array<uint16_t, kMaxCallDepth> calls;
-
-  void note(const TaskContext& t) {
-    pc = t.pc;
-    depth = t.depth;
-    commands = t.commands;
-    std::copy_n(t.calls.begin(), depth, calls.begin());
-  }
-  void give_back(TaskContext& t) const {
-    t.pc = pc;
-    t.depth = depth;
-    t.commands = commands;
-    std::copy_n(calls.begin(), depth, t.calls.begin());
-  }
-};
-
-}  // namespace
-
 static_assert(std::is_trivially_copyable_v<Machine>, "a copy is a snapshot");
 
 Machine::Machine(const VerifiedImage& program, const Host& host) : program_(program), host_(host) {}
@@ -115,37 +90,70 @@ uint32_t Machine::run_tasks(const std::array<uint32_t, kTasks>& budgets) {
   return executed;
 }
 
+inline void Machine::BeforeAhead::Stand::note(const TaskContext& t) {
+  pc = t.pc;
+  depth = t.depth;
+  commands = t.commands;
+  std::copy_n(t.calls.begin(), depth, calls.begin());
+}
+
+inline void Machine::BeforeAhead::Stand::give_back(TaskContext& t) const {
+  t.pc = pc;
+  t.depth = depth;
+  t.commands = commands;
+  std::copy_n(calls.begin(), depth, t.calls.begin());
+}
+
 bool Machine::run_ahead(const std::array<uint32_t, kTasks>& budgets, uint32_t ticks,
                         std::span<const uint16_t> rollback) {
+  BeforeAhead before;
+  return run_ahead(budgets, ticks, rollback, before);
+}
+
+bool Machine::run_ahead(const std::array<uint32_t, kTasks>& budgets, uint32_t ticks,
+                        std::span<const uint16_t> rollback, BeforeAhead& before) {
   if (fast_ == nullptr || events_ || watches_ || rollback.size() > kMostRollback) return false;
-  if (waits_)
-    for (const TaskContext& t : contexts_)
-      if (t.state == TaskState::Waiting && t.wait_ms != 0 && t.wait_ms <= ticks) return false;
+  if (waits_ && waits_on() < ticks) return false;
 #ifndef __OPTIMIZE__  // the copy is too dear for a hot loop
-  const std::array<int32_t, kMaxVariables> before = h_;
+  const std::array<int32_t, kMaxVariables> variables = h_;
 #endif
-  std::array<int32_t, kMostRollback> values;  // before
-  for (size_t n = 0; n < rollback.size(); ++n) values[n] = h_[rollback[n]];
-  std::array<Stand, kTasks> stands;
+  before.ticks = 0;
+  for (size_t n = 0; n < rollback.size(); ++n) before.values[n] = h_[rollback[n]];
   for (size_t n = 0; n < kTasks; ++n) {
     TaskContext& t = contexts_[active_[n]];
     if (t.state != TaskState::Ready) continue;
-    stands[n].note(t);
+    before.stands[n].note(t);
     if (run_fast(t, budgets[n] * ticks) == 0) continue;
-    for (size_t other = 0; other <= n; ++other)
-      if (TaskContext& back = contexts_[active_[other]]; back.state == TaskState::Ready)
-        stands[other].give_back(back);
-    for (size_t variable = 0; variable < rollback.size(); ++variable)
-      h_[rollback[variable]] = values[variable];
+    before.tasks = n + 1;
+    take_back(rollback, before);
 #ifndef __OPTIMIZE__
-    assert(h_ == before);
+    assert(h_ == variables);
 #endif
     return false;
   }
+  before.tasks = kTasks;
+  before.ticks = ticks;
   if (waits_)
     for (TaskContext& t : contexts_)
       if (t.state == TaskState::Waiting && t.wait_ms != 0) t.wait_ms -= ticks;
   return true;
+}
+
+void Machine::take_back(std::span<const uint16_t> rollback, const BeforeAhead& before) {
+  for (size_t n = 0; n < before.tasks; ++n)
+    if (TaskContext& t = contexts_[active_[n]]; t.state == TaskState::Ready) before.stands[n].give_back(t);
+  for (size_t n = 0; n < rollback.size(); ++n) h_[rollback[n]] = before.values[n];
+  if (waits_)
+    for (TaskContext& t : contexts_)
+      if (t.state == TaskState::Waiting && t.wait_ms != 0) t.wait_ms += before.ticks;
+}
+
+uint32_t Machine::waits_on() const {
+  uint32_t ticks = UINT32_MAX;
+  if (waits_)
+    for (const TaskContext& t : contexts_)
+      if (t.state == TaskState::Waiting && t.wait_ms != 0) ticks = std::min(ticks, t.wait_ms - 1);
+  return ticks;
 }
 
 // From a command on that is the reference interpreter's, if there is one to be executed.

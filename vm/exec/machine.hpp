@@ -103,6 +103,14 @@ class Machine {
   bool run_ahead(const std::array<uint32_t, kTasks>& budgets, uint32_t ticks,
                  std::span<const uint16_t> rollback);
   static constexpr size_t kMostRollback = 256;
+  // The same; `before` takes what there was, for take_back(): after it the machine is as if run_ahead() had not been,
+  // unless something else has changed it since.
+  struct BeforeAhead;
+  bool run_ahead(const std::array<uint32_t, kTasks>& budgets, uint32_t ticks,
+                 std::span<const uint16_t> rollback, BeforeAhead& before);
+  void take_back(std::span<const uint16_t> rollback, const BeforeAhead& before);
+  // In so many of the next ticks no wait for a time is over.
+  uint32_t waits_on() const;
 
   // An event of task 1 has happened. Without an installed routine nothing follows.
   void raise_event(Event event);
@@ -170,6 +178,23 @@ class Machine {
   uint32_t begun_ = 0;                           // contexts, since the machine was made
   std::array<TaskContext, kContexts> contexts_{};
   std::array<int32_t, kMaxVariables> h_{};
+};
+
+// What the fast engine changes of contexts, and variables that tasks can write.
+struct Machine::BeforeAhead {
+  struct Stand {
+    void note(const TaskContext& t);
+    void give_back(TaskContext& t) const;
+
+    uint32_t pc;
+    uint8_t depth;
+    uint64_t commands;
+    std::array<uint16_t, kMaxCallDepth> calls;
+  };
+  uint32_t ticks;
+  size_t tasks;  // so many of them have a stand
+  std::array<Stand, kTasks> stands;
+  std::array<int32_t, kMostRollback> values;
 };
 
 }  // namespace ipos::vm

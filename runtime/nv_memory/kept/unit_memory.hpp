@@ -43,6 +43,7 @@ class UnitMemory final : public NonvolatileMemory, public RetainedMemory {
     if (dirty_) commit();
   }
   void set_time(Time now) { now_ = now; }
+  bool has_changed() const { return dirty_; }  // since the last tick
 
   ValueWindow& variables() { return variables_; }
   const ValueWindow& variables() const { return variables_; }

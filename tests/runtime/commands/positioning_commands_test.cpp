@@ -41,6 +41,7 @@ struct AxisRig : ProgramRig {
   void go_on(uint32_t rate = 20) {
     const auto h = program.variables();
     drive.tick(service.order(now, h, 0));
+    service.observe();
     service.show(now, h);
     positioning.tick(program);
     vm::run_tick(program, vm::Rates{{rate, rate, rate}});

@@ -47,6 +47,7 @@ struct Rig {
     const int32_t before = drive.axis().position;
     drive.tick(control);
     mechanical += runtime::wrapped(int64_t{drive.axis().position} - before);
+    service.observe();
     service.show(now, h);
     now += runtime::kMillisecond;
     ++ms;

@@ -204,6 +204,7 @@ TEST(PositioningReports, NameThePlaceOfTheCommand) {
     // Of a mode without positioning: F77 has no response, but is told.
     const auto tick = [&](runtime::Time now) {
       drive.tick(service.order(now, h, 0));
+      service.observe();
       service.show(now, h);
     };
     tick(0);

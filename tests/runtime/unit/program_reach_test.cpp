@@ -22,16 +22,22 @@ TEST(SystemVariables, AreThoseOfTheTable) {
 TEST(ProgramReach, FollowsFromTheCommandsThatAreAhead) {
   struct Row {
     const char* text;
-    bool mute, quiet, reads_position;
+    bool mute, modest, quiet, reads_position, reads_travel;
   };
   for (const Row& row :
-       {Row{"END\n", true, true, false}, Row{"M01 : ADD H0 + 1\nJMP M01\n", true, true, false},
-        Row{"MOVLNK H0\nEND\n", false, false, false}, Row{"SCOMON\nEND\n", false, false, false},
-        Row{"SET H484 = 0\nEND\n", true, false, false}, Row{"SET H0 = H511\nEND\n", true, true, true}}) {
+       {Row{"END\n", true, true, true, false, false}, Row{"M01 : ADD H0 + 1\nJMP M01\n", true, true, true, false, false},
+        Row{"MOVLNK H0\nEND\n", false, true, false, false, false}, Row{"SCOMON\nEND\n", false, true, false, false, false},
+        Row{"SET H484 = 0\nEND\n", true, false, false, false, false},
+        Row{"GOA NOWAIT #1000\nEND\n", true, true, false, false, false},
+        Row{"SET H0 = H511\nEND\n", true, true, true, true, true}, Row{"SET H0 = H491\nEND\n", true, true, true, true, true},
+        // While an axis is on its way its target stays; a lag is one of a travel.
+        Row{"SET H0 = H492\nEND\n", true, true, true, true, false}, Row{"SET H0 = H495\nEND\n", true, true, true, false, true}}) {
     const ProgramRig rig(row.text);
     const ProgramReach reach(rig.machine, {});
     EXPECT_EQ(reach.mute, row.mute) << row.text;
+    EXPECT_EQ(reach.modest, row.modest) << row.text;
     EXPECT_EQ(reach.quiet, row.quiet) << row.text;
+    EXPECT_EQ(reach.reads_travel, row.reads_travel) << row.text;
     EXPECT_EQ(reach.reads_position, row.reads_position) << row.text;
     EXPECT_FALSE(reach.sends_position) << row.text;
   }
