@@ -254,7 +254,8 @@ void ManyTicks::find_reach(Time first) {
   size_t count = 0;
   for (const VariableObjects* of_bus : unit_.objects())
     if (of_bus != nullptr) objects[count++] = of_bus;
-  reach_ = ProgramReach(*unit_.machine(), std::span(objects).first(count), std::move(reach_.rollback));
+  reach_ = ProgramReach(*unit_.machine(), std::span(objects).first(count), unit_.positioning() != nullptr,
+                        std::move(reach_.rollback));
   reach_backoff_.fail(first, kReachPause);
 }
 

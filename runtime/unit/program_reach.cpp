@@ -14,6 +14,10 @@ using vm::Opcode;
 
 constexpr Opcode kBusCalls[] = {Opcode::Movlnk, Opcode::Scom, Opcode::ScomOn, Opcode::ScomState};
 
+// PositioningCommands answers none of them with a fault.
+constexpr Opcode kOfPositioning[] = {Opcode::GoAbsH, Opcode::GoAbsK,   Opcode::GoRelH,    Opcode::GoRelK,
+                                     Opcode::Go0,    Opcode::AxisStop, Opcode::TouchProbe};
+
 // Not the target, and not what belongs to the modulo function.
 constexpr size_t kOfTravel[] = {
     stdlib::system_variable("SetpointPos"), stdlib::system_variable("LagDistance"), stdlib::system_variable("ActPos_Abs"),
@@ -31,7 +35,7 @@ bool is_system_variable(size_t variable) {
   return variable >= stdlib::kFirstSystemVariable && variable <= stdlib::kLastSystemVariable;
 }
 
-ProgramReach::ProgramReach(const vm::Machine& machine, std::span<const VariableObjects* const> objects,
+ProgramReach::ProgramReach(const vm::Machine& machine, std::span<const VariableObjects* const> objects, bool positions,
                            std::vector<uint16_t> memory)
     : rollback(std::move(memory)) {
   rollback.clear();
@@ -45,7 +49,7 @@ ProgramReach::ProgramReach(const vm::Machine& machine, std::span<const VariableO
   for (size_t n = stdlib::kFirstSystemVariable; n <= stdlib::kLastSystemVariable; ++n)
     modest = modest && !outlook.written()[n];
   quiet = modest && !outlook.calls();
-  may_fault = outlook.may_fault();
+  may_fault = positions ? outlook.may_fault_beside(kOfPositioning) : outlook.may_fault();
   may_stop = outlook.may_stop();
   reads_position = std::any_of(std::begin(stdlib::kUsedVariables), std::end(stdlib::kUsedVariables), used);
   reads_travel = std::any_of(std::begin(kOfTravel), std::end(kOfTravel),

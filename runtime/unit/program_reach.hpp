@@ -14,8 +14,9 @@ namespace ipos::runtime {
 
 struct ProgramReach {
   ProgramReach() = default;
-  // `objects`: of its buses. They stay as they are when the program is mute. `memory` of an earlier one is used again.
-  ProgramReach(const vm::Machine& machine, std::span<const VariableObjects* const> objects,
+  // `objects`: of its buses. They stay as they are when the program is mute. `positions`: the unit does, so it refuses no
+  // command of positioning. `memory` of an earlier one is used again.
+  ProgramReach(const vm::Machine& machine, std::span<const VariableObjects* const> objects, bool positions = false,
                std::vector<uint16_t> memory = {});
 
   bool mute = false;      // it does not call the bus

@@ -43,7 +43,7 @@ class Outlook::Walk {
     const Instruction& command = decoded.instruction;
     const Coding& row = coding(command.opcode);
     outlook.commands_[static_cast<size_t>(command.opcode)] = true;
-    outlook.faults_ |= can_fault(command);
+    if (can_fault(command)) outlook.faults_[static_cast<size_t>(command.opcode)] = true;
     outlook.stops_ |=
         can_fault(command) || (row.flow != Flow::Next && row.flow != Flow::Jump && row.flow != Flow::Branch);
     outlook.calls_ |= row.flow == Flow::System || row.flow == Flow::SystemCall;

@@ -6,6 +6,7 @@
 #include <array>
 #include <bitset>
 #include <cstdint>
+#include <span>
 
 #include "vm/exec/machine.hpp"
 
@@ -20,7 +21,13 @@ class Outlook {
   bool reaches(Opcode opcode) const { return commands_[static_cast<size_t>(opcode)]; }
 
   // False: no command can cause a fault, whatever the variables are.
-  bool may_fault() const { return faults_; }
+  bool may_fault() const { return faults_.any(); }
+  // The same where these commands cannot, as the host never answers them with one.
+  bool may_fault_beside(std::span<const Opcode> harmless) const {
+    std::bitset<256> left = faults_;
+    for (const Opcode opcode : harmless) left.reset(static_cast<size_t>(opcode));
+    return left.any();
+  }
 
   // False: the tasks go round for ever, and all they do is to change variables.
   bool may_stop() const { return stops_; }
@@ -41,8 +48,8 @@ class Outlook {
   class Walk;
 
   std::bitset<256> commands_;
+  std::bitset<256> faults_;  // of these, those that can
   Variables used_, written_;
-  bool faults_ = false;
   bool stops_ = false;
   bool calls_ = false;
   bool apart_ = true;

@@ -61,7 +61,8 @@ class TravellingPlant {
  public:
   explicit TravellingPlant(uint64_t seed) : random_(seed) {
     stations_ = pick(1, 3);
-    text_ = fmt::format("seed = {}\n[[bus]]\nname = \"can\"\nkind = \"can\"\nbaud = 500000\n", pick(0, 9));
+    slow_ = pick(0, 2) == 0;  // frames wait for the line
+    text_ = fmt::format("seed = {}\n[[bus]]\nname = \"can\"\nkind = \"can\"\nbaud = {}\n", pick(0, 9), slow_ ? 125'000 : 500'000);
     const int led = pick(0, 3) == 0 ? pick(0, stations_ - 1) : -1;
     for (int n = 0; n < stations_; ++n) station(n, n == led);
     if (led >= 0) master(led);
@@ -88,7 +89,7 @@ class TravellingPlant {
     if (has_program) text_ += fmt::format("program = \"P{}.IPC\"\n", n);
     if (pick(0, 3) == 0) text_ += "control = \"real\"\n";
     if (pick(0, 7) == 0) text_ += "noise = \"0.3 %\"\n";
-    text_ += fmt::format("[station.parameters]\n{} = {}\n", b ? "P881" : "P813", n + 1);
+    text_ += fmt::format("[station.parameters]\n{} = {}\n{} = {}\n", b ? "P881" : "P813", n + 1, b ? "P884" : "P816", slow_ ? 0 : 2);
     if (led) text_ += fmt::format("P100 = 10\nP101 = 3\nP876 = 1\nP870 = {}\nP871 = 1\n", 9);
     ramps();
     if (positions) positioning();
@@ -202,6 +203,7 @@ class TravellingPlant {
 
   std::mt19937_64 random_;
   int stations_ = 0;
+  bool slow_ = false;
   std::string text_;
   std::map<std::string, std::string> sources_;
 };

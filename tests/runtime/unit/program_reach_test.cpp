@@ -48,6 +48,22 @@ TEST(ProgramReach, FollowsFromTheCommandsThatAreAhead) {
             (std::vector<uint16_t>{7, 9}));
 }
 
+// A unit that positions refuses no command of positioning.
+TEST(ProgramReach, CommandsOfPositioningAreNoFaultsWhereTheUnitPositions) {
+  struct Row {
+    const char* text;
+    bool faults, faults_positioning;
+  };
+  for (const Row& row : {Row{"ADD H0 + 1\nEND\n", false, false}, Row{"GOA NOWAIT #1000\nEND\n", true, false},
+                         Row{"GOR WAIT H7\nEND\n", true, false}, Row{"ASTOP ENABLE\nEND\n", true, false},
+                         Row{"GOA NOWAIT #1000\nDIV H0 / H1\nEND\n", true, true},
+                         Row{"GOA NOWAIT #1000\nMOVLNK H0\nEND\n", true, true}}) {
+    const ProgramRig rig(row.text);
+    EXPECT_EQ(ProgramReach(rig.machine, {}).may_fault, row.faults) << row.text;
+    EXPECT_EQ(ProgramReach(rig.machine, {}, true).may_fault, row.faults_positioning) << row.text;
+  }
+}
+
 // A telegram that sends a system variable, or brings one, ties the program to it: at its first or second variable.
 TEST(ProgramReach, TelegramsOfSystemVariables) {
   struct Row {
