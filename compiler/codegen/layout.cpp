@@ -120,6 +120,7 @@ class Layout {
     image.functions.push_back({instance_name(number), starts_[number]});
 
     std::vector<uint32_t> addresses;
+    addresses.reserve(function.commands.size());
     uint32_t next = starts_[number];
     for (const Command& command : function.commands) {
       addresses.push_back(next);
@@ -144,7 +145,7 @@ class Layout {
       add_line(addresses[n], command.span);
       std::array<uint32_t, vm::kMaxWords> words{};
       const uint32_t count = vm::encode(instruction, words);
-      image.code.insert(image.code.end(), words.begin(), words.begin() + count);
+      for (uint32_t k = 0; k < count; ++k) image.code.push_back(words[k]);
     }
   }
 
@@ -162,7 +163,9 @@ class Layout {
   }
 
   void add_line(uint32_t address, Span span) {
-    const Position at = sources_.position(span.begin);
+    // The commands of an expression often come from one place.
+    if (span.begin != last_begin_) last_place_ = sources_.position(last_begin_ = span.begin);
+    const Position& at = last_place_;
     if (at.file == nullptr) return;
     vm::Image& image = out_.image;
     auto file = std::find(files_.begin(), files_.end(), at.file);
@@ -206,6 +209,8 @@ class Layout {
   std::vector<uint32_t> starts_;    // address of each instance
   std::map<size_t, size_t> named_;  // instances of a function that have a name
   std::vector<const SourceFile*> files_;
+  Location last_begin_;
+  Position last_place_;  // of last_begin_
   GeneratedProgram out_;
 };
 

@@ -7,6 +7,8 @@
 //   U  command nobody reaches    -> nothing
 #include "compiler/codegen/peephole.hpp"
 
+#include <algorithm>
+
 namespace ipos::compiler {
 namespace {
 
@@ -25,7 +27,7 @@ class Optimizer {
     do {
       do {
         changed_ = false;
-        gone_.assign(code_.commands.size(), false);
+        gone_.assign(code_.commands.size(), 0);
         thread_jumps();
         straighten();
         drop_unreached();
@@ -75,52 +77,51 @@ class Optimizer {
   }
 
   void straighten() {
-    std::vector<bool> is_target(code_.commands.size() + 1);
+    std::vector<char> is_target(code_.commands.size() + 1);
     for (const Command& command : code_.commands)
-      if (command.label >= 0) is_target[target(command)] = true;
+      if (command.label >= 0) is_target[target(command)] = 1;
     for (size_t n = 0; n < code_.commands.size(); ++n) {
       Command& command = code_.commands[n];
-      if (command.label < 0 || gone_[n]) continue;
+      if (command.label < 0 || gone_[n] != 0) continue;
       if (n + 2 < code_.commands.size() && is_branch(command) && target(command) == n + 2 &&
-          is_jump(code_.commands[n + 1]) && !is_target[n + 1]) {
+          is_jump(code_.commands[n + 1]) && is_target[n + 1] == 0) {
         command.instruction.opcode = vm::inverse(command.instruction.opcode);
         command.label = code_.commands[n + 1].label;
-        gone_[n + 1] = true;
+        gone_[n + 1] = 1;
       }
-      const bool same_way = is_branch(command) && n + 1 < code_.commands.size() && !gone_[n + 1] &&
+      const bool same_way = is_branch(command) && n + 1 < code_.commands.size() && gone_[n + 1] == 0 &&
                             is_jump(code_.commands[n + 1]) &&
                             target(code_.commands[n + 1]) == target(command);
-      if (target(command) == n + 1 || same_way) gone_[n] = true;
+      if (target(command) == n + 1 || same_way) gone_[n] = 1;
     }
   }
 
   void drop_unreached() {
-    std::vector<bool> reached(code_.commands.size());
+    std::vector<char> reached(code_.commands.size());
     std::vector<size_t> open{0};
     while (!open.empty()) {
       const size_t at = open.back();
       open.pop_back();
-      if (at >= code_.commands.size() || reached[at]) continue;
-      reached[at] = true;
+      if (at >= code_.commands.size() || reached[at] != 0) continue;
+      reached[at] = 1;
       const Command& command = code_.commands[at];
       const Flow flow = vm::info(command.instruction.opcode).flow;
-      if (command.label >= 0 && !gone_[at]) open.push_back(target(command));
-      if (gone_[at] || (flow != Flow::Jump && flow != Flow::Return && flow != Flow::End))
+      if (command.label >= 0 && gone_[at] == 0) open.push_back(target(command));
+      if (gone_[at] != 0 || (flow != Flow::Jump && flow != Flow::Return && flow != Flow::End))
         open.push_back(at + 1);
     }
     for (size_t n = 0; n < reached.size(); ++n)
-      if (!reached[n]) gone_[n] = true;
+      if (reached[n] == 0) gone_[n] = 1;
   }
 
   void compact() {
+    if (std::find(gone_.begin(), gone_.end(), 1) == gone_.end()) return;
+    changed_ = true;
     std::vector<size_t> moved(code_.commands.size() + 1);
     size_t kept = 0;
     for (size_t n = 0; n < code_.commands.size(); ++n) {
       moved[n] = kept;
-      if (gone_[n]) {
-        changed_ = true;
-        continue;
-      }
+      if (gone_[n] != 0) continue;
       if (kept != n) code_.commands[kept] = std::move(code_.commands[n]);
       ++kept;
     }
@@ -130,7 +131,7 @@ class Optimizer {
   }
 
   FunctionCode& code_;
-  std::vector<bool> gone_;
+  std::vector<char> gone_;
   bool changed_ = false;
 };
 

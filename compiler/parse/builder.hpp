@@ -12,11 +12,23 @@
 
 #include "compiler/ast/ast.hpp"
 #include "compiler/diag/diag.hpp"
+#include "compiler/preprocess/word_filter.hpp"
 
 namespace ipos::compiler {
 
 // Names that are types where they stand: the standard structures and every typedef so far.
-using TypeNames = std::unordered_set<std::string_view>;
+class TypeNames {
+ public:
+  void insert(std::string_view name) {
+    filter_.add(name);
+    names_.insert(name);
+  }
+  bool contains(std::string_view name) const { return filter_.may_have(name) && names_.contains(name); }
+
+ private:
+  WordFilter filter_;
+  std::unordered_set<std::string_view> names_;
+};
 
 // A mistake in a declaration, held back until it is known what kind of declaration it is.
 struct Problem {

@@ -34,6 +34,22 @@ bool is_type(TokenKind kind) {
   }
 }
 
+bool opens_declarations(std::string_view word) {
+  return is_any(word, {"VAR", "VAR_GLOBAL", "VAR_INPUT", "VAR_OUTPUT", "VAR_IN_OUT", "VAR_TEMP"});
+}
+
+// Each form has one of these tokens. Most programs have none.
+bool may_be_of_form(const Token& token) {
+  switch (token.kind) {
+    case TokenKind::Hash:
+    case TokenKind::Enum:
+    case TokenKind::Const: return true;
+    case TokenKind::Number: return token.text[0] == '.';
+    case TokenKind::Name: return (token.text[0] == 'V' || token.text[0] == 'v') && opens_declarations(token.text);
+    default: return false;
+  }
+}
+
 // "FF_FF" of base 16; nothing where a digit is not of the base.
 std::optional<uint32_t> value_of(std::string_view digits, int base) {
   std::string plain(digits);
@@ -253,9 +269,7 @@ class Forms {
 
   // VAR a, b : INT := 5; END_VAR outside of functions.
   bool declarations() {
-    if (kind(0) != TokenKind::Name || depth_ != 0 ||
-        !is_any(text(0), {"VAR", "VAR_GLOBAL", "VAR_INPUT", "VAR_OUTPUT", "VAR_IN_OUT", "VAR_TEMP"}))
-      return false;
+    if (kind(0) != TokenKind::Name || depth_ != 0 || !opens_declarations(text(0))) return false;
     size_t n = 1;
     if (kind(n) == TokenKind::Name && is_any(text(n), {"CONSTANT", "RETAIN", "PERSISTENT"})) ++n;
     if (kind(n) != TokenKind::Name || (kind(n + 1) != TokenKind::Colon && kind(n + 1) != TokenKind::Comma)) return false;
@@ -309,9 +323,10 @@ class Forms {
 
 }  // namespace
 
-std::vector<Token> without_foreign_forms(std::span<const Token> tokens, std::deque<std::string>& texts,
-                                         Diagnostics& diagnostics) {
-  return Forms(tokens, texts, diagnostics).run();
+std::span<const Token> without_foreign_forms(std::span<const Token> tokens, ForeignForms& changed, Diagnostics& diagnostics) {
+  if (std::none_of(tokens.begin(), tokens.end(), may_be_of_form)) return tokens;
+  changed.tokens = Forms(tokens, changed.texts, diagnostics).run();
+  return changed.tokens;
 }
 
 }  // namespace ipos::compiler

@@ -13,8 +13,13 @@
 
 namespace ipos::compiler {
 
-// The tokens for without_foreign_words(). `texts` keeps the words that stand in no source, as long as the tokens are used.
-std::vector<Token> without_foreign_forms(std::span<const Token> tokens, std::deque<std::string>& texts,
-                                         Diagnostics& diagnostics);
+// What is kept as long as the tokens are used.
+struct ForeignForms {
+  std::vector<Token> tokens;
+  std::deque<std::string> texts;  // words that stand in no source
+};
+
+// The tokens for without_foreign_words(): those of `changed`, or those given where there is nothing to change.
+std::span<const Token> without_foreign_forms(std::span<const Token> tokens, ForeignForms& changed, Diagnostics& diagnostics);
 
 }  // namespace ipos::compiler

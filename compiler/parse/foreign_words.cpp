@@ -8,6 +8,7 @@
 #include <string>
 #include <unordered_set>
 
+#include "compiler/preprocess/word_filter.hpp"
 #include "stdlib/spelling.hpp"
 
 namespace ipos::compiler {
@@ -38,28 +39,15 @@ constexpr Infix kInfix[] = {{"and", TokenKind::AndAnd, "write '&&', or '&' for b
                             {"div", TokenKind::Slash, "write '/'"}};
 constexpr std::string_view kBlockEnds[] = {"end_if", "end_while", "end_for", "end_case", "endif"};
 
-// Words that mean something in another spelling, by their first letter and their length: most names of a program are
-// told from all of them at once.
-class Spellings {
- public:
-  constexpr Spellings() {
-    for (const Keyword& row : kKeywords) add(row.spelling);
-    for (const Infix& row : kInfix) add(row.word);
-    for (const std::string_view word : kBlockEnds) add(word);
-    for (const std::string_view word : {"not", "then", "begin", "end"}) add(word);
-  }
-  constexpr bool may_have(std::string_view word) const {
-    return word.size() < kLongest && (lengths_[letter(word[0])] >> word.size() & 1U) != 0;
-  }
-
- private:
-  static constexpr size_t kLongest = 32;
-  static constexpr size_t letter(char c) { return static_cast<size_t>(c) & 31U; }  // a and A are one
-  constexpr void add(std::string_view word) { lengths_[letter(word[0])] |= 1U << word.size(); }
-
-  std::array<uint32_t, 32> lengths_{};
-};
-constexpr Spellings kSpellings;
+// Words that mean something in another spelling.
+constexpr WordFilter kSpellings = [] {
+  WordFilter words;
+  for (const Keyword& row : kKeywords) words.add(row.spelling);
+  for (const Infix& row : kInfix) words.add(row.word);
+  for (const std::string_view word : kBlockEnds) words.add(word);
+  for (const std::string_view word : {"not", "then", "begin", "end"}) words.add(word);
+  return words;
+}();
 
 constexpr size_t kLongestHead = 500;  // tokens in the brackets of a misspelt head
 
@@ -90,8 +78,7 @@ class Translator {
         types_.insert(tokens[i].text);
   }
 
-  std::vector<Token> run() {
-    out_.reserve(tokens_.size());
+  std::span<const Token> run(std::vector<Token>& changed) {
     while (at_ < tokens_.size()) {
       const Token& token = tokens_[at_];
       if (token.kind == TokenKind::Pragma || token.kind == TokenKind::Declare) directive_ = true;
@@ -101,23 +88,43 @@ class Translator {
       const bool translated = !directive_ && (token.kind == TokenKind::Name ? word(token) : sign(token));
       if (!translated) take(token.kind);
     }
-    return std::move(out_);
+    if (same_) return tokens_;
+    changed = std::move(out_);
+    return changed;
   }
 
  private:
   TokenKind kind(size_t i) const { return i < tokens_.size() ? tokens_[i].kind : TokenKind::End; }
   TokenKind next(size_t distance = 1) const { return kind(at_ + distance); }
-  TokenKind before() const { return out_.empty() ? TokenKind::Semicolon : out_.back().kind; }
+  TokenKind before() const {
+    if (same_) return at_ == 0 ? TokenKind::Semicolon : tokens_[at_ - 1].kind;
+    return out_.empty() ? TokenKind::Semicolon : out_.back().kind;
+  }
 
   void take(TokenKind as, size_t count = 1) {
+    if (same_) {
+      if (as == tokens_[at_].kind && count == 1) {
+        ++at_;
+        return;
+      }
+      begin_change();
+    }
     out_.push_back(tokens_[at_]);
     out_.back().kind = as;
     out_.back().span.end = tokens_[at_ + count - 1].span.end;
     at_ += count;
   }
+  // Most programs have nothing foreign, so that their tokens need no copy.
+  void begin_change() {
+    same_ = false;
+    out_.reserve(tokens_.size());
+    out_.assign(tokens_.begin(), tokens_.begin() + static_cast<std::ptrdiff_t>(at_));
+  }
+
   bool foreign(TokenKind as, std::string_view text, std::string_view advice, size_t count = 1) {
     diagnostics_.report(Diag::ForeignWord, {tokens_[at_].span.begin, tokens_[at_ + count - 1].span.end},
                         {std::string(text), std::string(advice)});
+    if (same_) begin_change();
     take(as, count);
     return true;
   }
@@ -251,6 +258,7 @@ class Translator {
   Diagnostics& diagnostics_;
   std::vector<Token> out_;
   std::unordered_set<std::string_view> types_;  // names after a '}': of structure types
+  bool same_ = true;  // nothing is changed so far, and out_ is empty
   size_t at_ = 0;
   int depth_ = 0;
   int begun_ = 0;  // BEGIN without END so far
@@ -259,8 +267,9 @@ class Translator {
 
 }  // namespace
 
-std::vector<Token> without_foreign_words(std::span<const Token> tokens, Diagnostics& diagnostics) {
-  return Translator(tokens, diagnostics).run();
+std::span<const Token> without_foreign_words(std::span<const Token> tokens, std::vector<Token>& changed,
+                                             Diagnostics& diagnostics) {
+  return Translator(tokens, diagnostics).run(changed);
 }
 
 }  // namespace ipos::compiler

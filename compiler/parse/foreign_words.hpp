@@ -11,7 +11,9 @@
 
 namespace ipos::compiler {
 
-// The tokens for the parser. Only what can be no valid program is touched: all these words may be names.
-std::vector<Token> without_foreign_words(std::span<const Token> tokens, Diagnostics& diagnostics);
+// The tokens for the parser: `changed`, or those given where there is nothing to change. Only what can be no valid program is
+// touched: all these words may be names.
+std::span<const Token> without_foreign_words(std::span<const Token> tokens, std::vector<Token>& changed,
+                                             Diagnostics& diagnostics);
 
 }  // namespace ipos::compiler

@@ -20,9 +20,10 @@ ast::Program parse_tokens(const SourceMap& map, const PreprocessedText& text, Di
   ast::Program program;
   for (const auto& [name, place] : text.record.left_out) program.left_out.emplace(name, ast::Program::LeftOut{place.name, place.condition});
   TypeNames types;
-  for (const stdlib::Structure& structure : stdlib::structures()) types.emplace(structure.name);
-  std::deque<std::string> texts;
-  const std::vector<Token> tokens = without_foreign_words(without_foreign_forms(text.tokens, texts, diagnostics), diagnostics);
+  for (const stdlib::Structure& structure : stdlib::structures()) types.insert(structure.name);
+  ForeignForms forms;
+  std::vector<Token> words;
+  const std::span<const Token> tokens = without_foreign_words(without_foreign_forms(text.tokens, forms, diagnostics), words, diagnostics);
   Builder build(program, types, map, diagnostics, misses_closing_brace(tokens));
   TokenFeed feed(tokens, types, diagnostics, unclosed_brace(tokens, map));
   // The result says no more than the diagnostics do.

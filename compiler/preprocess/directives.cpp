@@ -11,7 +11,7 @@ namespace {
 
 constexpr size_t kMaxIncludeDepth = 64;  // ours
 
-bool same_text(const std::vector<Token>& a, const std::vector<Token>& b) {
+bool same_text(std::span<const Token> a, std::span<const Token> b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](const Token& x, const Token& y) { return x.text == y.text; });
 }
@@ -96,8 +96,8 @@ void Preprocessor::define(const Token& directive) {
     Diagnostic& warning = diagnostics_.report(Diag::MacroRedefined, name.span, {std::string(name.text)});
     warning.notes.push_back({old->name, "the former text is here"});
   }
-  result_.record.definitions.push_back({name.span, line});
-  macros_.define(name.text, {name.span, std::move(line)});
+  result_.record.definitions.push_back({name.span, std::move(line)});
+  macros_.define(name.text, {name.span, result_.record.definitions.back().body});
 }
 
 void Preprocessor::undefine(const Token& directive) {

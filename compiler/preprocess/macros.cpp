@@ -9,7 +9,7 @@ const Macro* Macros::find(std::string_view name) const {
 }
 
 Macro* Macros::expandable(const Token& token) {
-  if (token.kind != TokenKind::Name) return nullptr;
+  if (token.kind != TokenKind::Name || !names_.may_have(token.text)) return nullptr;
   const auto found = macros_.find(token.text);
   if (found == macros_.end() || found->second.expanding) return nullptr;
   uses_.push_back({token.span, found->second.name});

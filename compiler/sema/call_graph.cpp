@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <deque>
 
+#include "compiler/sema/context.hpp"
 #include "compiler/sema/walk.hpp"
 
 namespace ipos::compiler {
@@ -114,20 +115,20 @@ std::vector<bool> reachable(const CallGraph& graph, size_t main) {
   return reached;
 }
 
-void check_calls(const checked::Program& program, const stdlib::UnitType& unit, const SourceMap& sources,
-                 Diagnostics& diagnostics) {
-  const CallGraph graph = call_graph(program);
+void check_calls(Context& context) {
+  const checked::Program& program = context.program;
+  const CallGraph& graph = context.graph;
   const std::vector<bool> used = reachable(graph, program.main);
   // A header is a library: nobody uses all of it.
   const auto included = [&](const checked::Function& function) {
-    const SourceFile* file = sources.file_of(function.span.begin);
+    const SourceFile* file = context.sources.file_of(function.span.begin);
     return file != nullptr && file->included_at.valid();
   };
   std::vector<bool> settled = outside_of_cycles(graph);
   for (size_t n = 0; n < graph.size(); ++n) {
     const checked::Function& function = program.functions[n];
     if (!used[n] && !included(function))
-      diagnostics.report(Diag::UnusedFunction, function.span, {function.name});
+      context.diagnostics.report(Diag::UnusedFunction, function.span, {function.name});
     if (settled[n]) continue;
     const std::vector<Reference> chain = cycle_through(graph, n);
     if (chain.empty()) continue;
@@ -136,8 +137,8 @@ void check_calls(const checked::Program& program, const stdlib::UnitType& unit, 
       text += " -> " + program.functions[step.function].name;
       settled[step.function] = true;
     }
-    Diagnostic& message = diagnostics.report(Diag::Recursion, chain.front().span,
-                                             {function.name, text, fmt::format("{}", unit.call_depth)});
+    Diagnostic& message = context.diagnostics.report(Diag::Recursion, chain.front().span,
+                                                     {function.name, text, fmt::format("{}", context.unit.call_depth)});
     for (size_t step = 1; step < chain.size(); ++step)
       message.notes.push_back({chain[step].span, fmt::format("'{}' is called here",
                                                              program.functions[chain[step].function].name)});

@@ -6,9 +6,10 @@
 
 #include "compiler/diag/diag.hpp"
 #include "compiler/sema/checked.hpp"
-#include "stdlib/unit_types.hpp"
 
 namespace ipos::compiler {
+
+struct Context;
 
 enum class ReferenceKind : uint8_t {
   Call,   // runs as part of the caller: CALL, INPCALL, SYSCALL
@@ -35,7 +36,6 @@ CallGraph call_graph(const checked::Program& program);
 std::vector<bool> reachable(const CallGraph& graph, size_t main);
 
 // Warnings: recursion with its chain, functions nobody uses.
-void check_calls(const checked::Program& program, const stdlib::UnitType& unit, const SourceMap& sources,
-                 Diagnostics& diagnostics);
+void check_calls(Context& context);
 
 }  // namespace ipos::compiler

@@ -93,6 +93,6 @@ class CommandCheck {
 };
 
 // The whole of it, and what needs no values: objects that nothing starts, timers, memory (program_check.cpp).
-void check_commands(Context& context);
+void check_commands(Context& context, const ProgramRoots& roots);
 
 }  // namespace ipos::compiler

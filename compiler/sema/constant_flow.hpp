@@ -93,6 +93,7 @@ class ConstantFlow {
   Set value_of(const checked::Assign& node, Span span);
 
   const checked::Program& program_;
+  const std::vector<Contents>& contents_;
   const ProgramRoots& roots_;
   KnownValues sets_;
   std::vector<uint32_t> slots_;    // of each number

@@ -39,15 +39,15 @@ void ConstantFlow::find_followed() {
   slots_.assign(kSbusStarted + 1, kNotFollowed);
   for (size_t n = 0; n < program_.functions.size(); ++n) {
     if (!roots_.alive[n]) continue;
-    checked::walk(*program_.functions[n].body, [&](const checked::Expr& expr) {
-      const auto* call = std::get_if<checked::SystemCall>(&expr.node);
-      if (call == nullptr) return;
+    for (const checked::Expr* expr : contents_[n].calls) {
+      const auto* call = std::get_if<checked::SystemCall>(&expr->node);
+      if (call == nullptr) continue;
       const OrderBlock orders = order_block(*call);
       for (uint32_t m = 0; m < orders.size; ++m) follow(orders.first + m);
       if (call->opcode == vm::Opcode::Scom && orders.result)
         read_only_takers_.insert(orders.first + orders.size - 2);  // DPointer of what is sent
       if (call->opcode == vm::Opcode::VarInt) read_only_takers_.insert(orders.first + 2);  // SrcVar
-    });
+    }
   }
   follow(kWatchdog);
   follow(kSbusStarted);
@@ -55,7 +55,7 @@ void ConstantFlow::find_followed() {
     const size_t before = numbers_.size();
     for (size_t n = 0; n < program_.functions.size(); ++n)
       if (roots_.alive[n])
-        checked::walk(*program_.functions[n].body, [&](const checked::Expr& expr) { follow_sources(expr); });
+        for (const checked::Expr* expr : contents_[n].expressions) follow_sources(*expr);
     if (numbers_.size() == before) break;
   }
 }
@@ -127,7 +127,7 @@ void ConstantFlow::find_owners(const Context& context) {
   }
   for (size_t n = 0; n < program_.functions.size(); ++n)
     if (roots_.alive[n])
-      checked::walk(*program_.functions[n].body, [&](const checked::Expr& expr) { note_writes(expr, n); });
+      for (const checked::Expr* expr : contents_[n].expressions) note_writes(*expr, n);
   for (bool changed = true; changed;) {
     changed = false;
     for (size_t n = 0; n < relevant_.size(); ++n)
@@ -138,7 +138,7 @@ void ConstantFlow::find_owners(const Context& context) {
 }
 
 ConstantFlow::ConstantFlow(const Context& context, const ProgramRoots& roots)
-    : program_(context.program), roots_(roots) {
+    : program_(context.program), contents_(context.contents), roots_(roots) {
   find_followed();
   find_owners(context);
 }

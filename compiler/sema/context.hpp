@@ -3,12 +3,14 @@
 
 #include <map>
 #include <set>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
 #include "compiler/ast/ast.hpp"
 #include "compiler/diag/diag.hpp"
+#include "compiler/sema/call_graph.hpp"
 #include "compiler/sema/checked.hpp"
 #include "compiler/sema/scope.hpp"
 #include "stdlib/unit_types.hpp"
@@ -36,6 +38,12 @@ struct ConstantStore {
   Span span;
 };
 
+// What is in the body of a function, outer ones first, in the order of the source. Many checks look at all of it.
+struct Contents {
+  std::span<const checked::Expr* const> expressions;
+  std::span<const checked::Expr* const> calls;  // of them: calls of functions and commands
+};
+
 struct Context {
   const stdlib::UnitType& unit;
   const SourceMap& sources;
@@ -47,6 +55,8 @@ struct Context {
   std::set<std::string, std::less<>> reported_names;  // unknown ones, each reported once
   std::vector<ConstantStore> stores;
   std::vector<AccessPlace> indirect = {};  // uses of a variable that is known at run time only
+  std::vector<Contents> contents = {};     // of each function, when all are checked
+  CallGraph graph = {};                    // then, too
   size_t function = SIZE_MAX;  // index of the function being checked
   size_t order = 0;            // its place among the declarations
   const ast::Program* tree = nullptr;

@@ -25,10 +25,14 @@ void add_symbols(const std::string& name, const Type& type, uint32_t number, std
   }
 }
 
-std::vector<std::string> names(const Context& context, const std::vector<AccessPlace>& places) {
+using AccessList = std::vector<AccessPlace> Access::*;
+
+// Of the functions that have an access of a kind to variables in a row.
+std::vector<std::string> names(const Context& context, uint32_t number, uint32_t count, AccessList list) {
   std::vector<size_t> functions;
-  functions.reserve(places.size());
-  for (const AccessPlace& place : places) functions.push_back(place.function);
+  for (uint32_t n = number; n < number + count; ++n)
+    if (const auto found = context.accesses.find(n); found != context.accesses.end())
+      for (const AccessPlace& place : found->second.*list) functions.push_back(place.function);
   std::sort(functions.begin(), functions.end());
   functions.erase(std::unique(functions.begin(), functions.end()), functions.end());
   std::vector<std::string> out;
@@ -39,21 +43,27 @@ std::vector<std::string> names(const Context& context, const std::vector<AccessP
 
 checked::MapEntry make_entry(const Context& context, std::string name, std::string type, uint32_t number,
                              uint32_t count, std::string range) {
-  Access all;
-  for (uint32_t n = number; n < number + count; ++n) {
-    const auto found = context.accesses.find(n);
-    if (found == context.accesses.end()) continue;
-    for (const auto list : {&Access::readers, &Access::writers, &Access::takers})
-      (all.*list).insert((all.*list).end(), (found->second.*list).begin(), (found->second.*list).end());
-  }
   return {std::move(name),
           std::move(type),
           number,
           count,
           std::move(range),
-          names(context, all.readers),
-          names(context, all.writers),
-          names(context, all.takers)};
+          names(context, number, count, &Access::readers),
+          names(context, number, count, &Access::writers),
+          names(context, number, count, &Access::takers)};
+}
+
+checked::MapEntry entry_of(const Context& context, const Variable& variable) {
+  const char* range = variable.storage == Storage::Alias     ? "alias"
+                      : variable.storage == Storage::Initial ? "initials"
+                                                             : "globals";
+  return make_entry(context, variable.name, type_text(variable.type), variable.number, variable.type.size(), range);
+}
+
+checked::MapEntry entry_of(const Context& context, uint32_t number) {
+  const auto* row = stdlib::find_system_variable(static_cast<uint16_t>(number));
+  if (row != nullptr) return make_entry(context, std::string(row->compiler_name), "long", number, 1, "system");
+  return make_entry(context, fmt::format("H{}", number), "long", number, 1, "raw");
 }
 
 bool reached_by_number(const Context& context, uint32_t number) {
@@ -75,29 +85,25 @@ bool unused(const Context& context, const Variable& variable) {
 
 void describe_variables(Context& context) {
   checked::Program& program = context.program;
+  struct Row {
+    uint32_t number;
+    const Variable* variable;  // null: known by its number alone
+  };
+  std::vector<Row> rows;
   for (const Variable& variable : context.scope.variables()) {
     add_symbols(variable.name, variable.type, variable.number, program.symbols);
     if (variable.storage != Storage::Alias && unused(context, variable))
       context.diagnostics.report(Diag::UnusedVariable, variable.span, {variable.name});
-    const char* range = variable.storage == Storage::Alias     ? "alias"
-                        : variable.storage == Storage::Initial ? "initials"
-                                                               : "globals";
-    program.map.push_back(make_entry(context, variable.name, type_text(variable.type), variable.number,
-                                     variable.type.size(), range));
+    rows.push_back({variable.number, &variable});
   }
-  for (const auto& [number, span] : context.raw_names) {
-    const auto* row = stdlib::find_system_variable(static_cast<uint16_t>(number));
-    if (row != nullptr)
-      program.map.push_back(
-          make_entry(context, std::string(row->compiler_name), "long", number, 1, "system"));
-    else
-      program.map.push_back(make_entry(context, fmt::format("H{}", number), "long", number, 1, "raw"));
-  }
+  for (const auto& [number, span] : context.raw_names) rows.push_back({number, nullptr});
+  std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.number < b.number; });
+  program.map.reserve(rows.size());
+  for (const auto& [number, variable] : rows)
+    program.map.push_back(variable != nullptr ? entry_of(context, *variable) : entry_of(context, number));
   std::sort(program.symbols.begin(), program.symbols.end(), [](const vm::Symbol& a, const vm::Symbol& b) {
     return a.variable != b.variable ? a.variable < b.variable : a.name < b.name;
   });
-  std::stable_sort(program.map.begin(), program.map.end(),
-                   [](const auto& a, const auto& b) { return a.number < b.number; });
 }
 
 std::string map_text(const std::vector<checked::MapEntry>& map) {

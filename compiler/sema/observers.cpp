@@ -63,15 +63,17 @@ bool starts(const checked::Expr& expr) {
 }
 
 // Functions in which something is started, or in what they call.
-std::vector<bool> find_starting(const checked::Program& program, const CallGraph& graph) {
+std::vector<bool> find_starting(const Context& context) {
+  const CallGraph& graph = context.graph;
   std::vector<std::vector<size_t>> callers(graph.size());
   std::vector<bool> starting(graph.size());
   std::vector<size_t> open;
   for (size_t n = 0; n < graph.size(); ++n) {
     for (const Reference& reference : graph[n]) callers[reference.function].push_back(n);
-    checked::walk(*program.functions[n].body, [&](const checked::Expr& expr) {
-      if (!starting[n] && starts(expr)) open.push_back(n), starting[n] = true;
-    });
+    const auto& calls = context.contents[n].calls;
+    if (!std::any_of(calls.begin(), calls.end(), [](const checked::Expr* expr) { return starts(*expr); })) continue;
+    open.push_back(n);
+    starting[n] = true;
   }
   while (!open.empty()) {
     const size_t at = open.back();
@@ -86,7 +88,7 @@ std::vector<bool> find_starting(const checked::Program& program, const CallGraph
 
 Observers::Observers(Context& context) {
   const checked::Program& program = context.program;
-  const CallGraph graph = call_graph(program);
+  const CallGraph& graph = context.graph;
   const std::vector<bool> used = reachable(graph, program.main);
   for (const checked::Function& function : program.functions) names_.push_back(function.name);
   roots_ = find_roots(graph, program.main, used);
@@ -94,30 +96,31 @@ Observers::Observers(Context& context) {
   // The statements of main up to the first that starts something, and the functions that only they call.
   late_.resize(graph.size());
   std::vector<size_t> open;
-  const auto late = [&](const checked::Expr& expr) {
-    const auto reference = reference_of(expr);
-    if (!reference || late_[reference->function]) return;
-    late_[reference->function] = true;
-    open.push_back(reference->function);
+  const auto late = [&](const Reference& reference) {
+    if (late_[reference.function]) return;
+    late_[reference.function] = true;
+    open.push_back(reference.function);
   };
-  const std::vector<bool> starting = find_starting(program, graph);
+  const std::vector<bool> starting = find_starting(context);
   const auto* body = std::get_if<checked::Block>(&program.functions[program.main].body->node);
   bool begun = body == nullptr;
-  if (body == nullptr) checked::walk(*program.functions[program.main].body, late);
+  if (body == nullptr) std::for_each(graph[program.main].begin(), graph[program.main].end(), late);
   for (const checked::StmtPtr stmt : body != nullptr ? body->body : std::span<const checked::StmtPtr>{}) {
     checked::walk(*stmt, [&](const checked::Expr& expr) {
       const auto reference = reference_of(expr);
       begun = begun || starts(expr) || (reference && starting[reference->function]);
     });
     if (begun)
-      checked::walk(*stmt, late);
+      checked::walk(*stmt, [&](const checked::Expr& expr) {
+        if (const auto reference = reference_of(expr)) late(*reference);
+      });
     else
       early_.insert(stmt);
   }
   while (!open.empty()) {
     const size_t at = open.back();
     open.pop_back();
-    checked::walk(*program.functions[at].body, late);
+    std::for_each(graph[at].begin(), graph[at].end(), late);
   }
   if (late_[program.main]) early_.clear();  // it is called again
   late_[program.main] = true;

@@ -40,13 +40,11 @@ class ProgramCheck {
   ProgramCheck(Context& context, const ProgramRoots& roots, const CommandCheck& commands)
       : context_(context), roots_(roots), kept_(commands.kept()), exchanges_(commands.exchanges()) {}
 
-  void run() {
+  void run(const Written& written) {
     for (size_t n = 0; n < context_.program.functions.size(); ++n)
       if (roots_.alive[n])
-        checked::walk(*context_.program.functions[n].body, [&](const checked::Expr& expr) {
-          if (const auto* call = std::get_if<checked::SystemCall>(&expr.node)) commands_.push_back({&expr, call});
-        });
-    Written written(context_.program);
+        for (const checked::Expr* expr : context_.contents[n].calls)
+          if (const auto* call = std::get_if<checked::SystemCall>(&expr->node)) commands_.push_back({expr, call});
     for (size_t n = 0; n < context_.program.functions.size(); ++n)
       if (roots_.alive[n]) written_ |= written.of(n);
     check_started();
@@ -154,7 +152,7 @@ class ProgramCheck {
     Numbers read;
     for (size_t n = 0; n < context_.program.functions.size(); ++n)
       if (roots_.alive[n])
-        checked::walk(*context_.program.functions[n].body, [&](const checked::Expr& expr) { mark_read(expr, read); });
+        for (const checked::Expr* expr : context_.contents[n].expressions) mark_read(*expr, read);
     for (const GivenCommand& one : commands_) {
       const auto exchange = exchanges_.find(one.expr);
       if (exchange == exchanges_.end() || !is_used(exchange->second, read)) continue;
@@ -269,17 +267,17 @@ class ProgramCheck {
 
 }  // namespace
 
-void check_program(Context& context, const ProgramRoots& roots, const CommandCheck& commands) {
-  ProgramCheck(context, roots, commands).run();
+void check_program(Context& context, const ProgramRoots& roots, const CommandCheck& commands, const Written& written) {
+  ProgramCheck(context, roots, commands).run(written);
 }
 
-void check_commands(Context& context) {
-  const ProgramRoots roots(context.program);
+void check_commands(Context& context, const ProgramRoots& roots) {
   ConstantFlow flow(context, roots);
   CommandCheck check(context, roots, flow);
   flow.run([&](const ConstantFlow::Point& point) { check(point); });
-  check_program(context, roots, check);
-  check_states(context, roots);
+  const Written written(context);
+  check_program(context, roots, check, written);
+  check_states(context, roots, written);
 }
 
 }  // namespace ipos::compiler

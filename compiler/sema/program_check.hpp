@@ -3,10 +3,11 @@
 #pragma once
 
 #include "compiler/sema/command_check.hpp"
+#include "compiler/sema/written.hpp"
 
 namespace ipos::compiler {
 
 // `commands` has seen all commands.
-void check_program(Context& context, const ProgramRoots& roots, const CommandCheck& commands);
+void check_program(Context& context, const ProgramRoots& roots, const CommandCheck& commands, const Written& written);
 
 }  // namespace ipos::compiler

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 
+#include "compiler/sema/context.hpp"
+
 namespace ipos::compiler {
 
-ProgramRoots::ProgramRoots(const checked::Program& program)
-    : graph(call_graph(program)), alive(reachable(graph, program.main)), of(program.functions.size()) {
-  roots.push_back({program.main, vm::Opcode::End, 0, {}});
+ProgramRoots::ProgramRoots(const Context& context)
+    : graph(context.graph), alive(reachable(graph, context.program.main)), of(graph.size()) {
+  roots.push_back({context.program.main, vm::Opcode::End, 0, {}});
   for (size_t function = 0; function < graph.size(); ++function)
     for (const Reference& reference : graph[function]) {
       if (!alive[function] || reference.kind != ReferenceKind::Start) continue;

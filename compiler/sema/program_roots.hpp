@@ -27,9 +27,9 @@ struct ProgramRoot {
 };
 
 struct ProgramRoots {
-  explicit ProgramRoots(const checked::Program& program);
+  explicit ProgramRoots(const Context& context);
 
-  CallGraph graph;
+  const CallGraph& graph;
   std::vector<bool> alive;             // functions that main reaches in any way
   std::vector<ProgramRoot> roots;      // main first
   std::vector<std::vector<size_t>> of;  // roots that run a function, in rising order

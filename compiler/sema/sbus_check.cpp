@@ -10,7 +10,6 @@
 
 #include "compiler/sema/call_graph.hpp"
 #include "compiler/sema/command_writes.hpp"
-#include "compiler/sema/walk.hpp"
 #include "stdlib/unit_names.hpp"
 
 namespace ipos::compiler {
@@ -53,10 +52,10 @@ class SbusChecker {
   explicit SbusChecker(Context& context) : context_(context) {}
 
   void run() {
-    const std::vector<bool> used = reachable(call_graph(context_.program), context_.program.main);
+    const std::vector<bool> used = reachable(context_.graph, context_.program.main);
     for (size_t n = 0; n < used.size(); ++n)
       if (used[n])
-        checked::walk(*context_.program.functions[n].body, [&](const checked::Expr& e) { collect(e); });
+        for (const checked::Expr* expr : context_.contents[n].calls) collect(*expr);
     for (const ConstantStore& store : context_.stores)
       for (const Definition& definition : definitions_) check_store(store, definition);
     check_counts();

@@ -8,10 +8,12 @@
 #include "compiler/sema/habits.hpp"
 #include "compiler/sema/map.hpp"
 #include "compiler/sema/observers.hpp"
+#include "compiler/sema/program_roots.hpp"
 #include "compiler/sema/sbus_check.hpp"
 #include "compiler/sema/slips.hpp"
 #include "compiler/sema/statements.hpp"
 #include "compiler/sema/variable_use.hpp"
+#include "compiler/sema/walk.hpp"
 #include "compiler/sema/writers.hpp"
 #include "stdlib/spelling.hpp"
 
@@ -39,6 +41,25 @@ void check_bodies(const ast::Program& program, Context& context) {
     check_habits(*bodies[n]->body, context.sources, context.diagnostics);
     check_slips(*bodies[n]->body, context.sources, context.diagnostics);
     context.program.functions[n].body = StatementChecker(context).function_body(*bodies[n]->body);
+  }
+}
+
+// The functions are those of program and cannot change any more, so all checks of the whole program can share this.
+void list_contents(Context& context) {
+  std::vector<const checked::Expr*> expressions;
+  std::vector<const checked::Expr*> calls;
+  for (const checked::Function& function : context.program.functions) {
+    expressions.clear();
+    calls.clear();
+    checked::walk(*function.body, [&](const checked::Expr& expr) {
+      expressions.push_back(&expr);
+      if (std::holds_alternative<checked::Call>(expr.node) || std::holds_alternative<checked::SystemCall>(expr.node))
+        calls.push_back(&expr);
+    });
+    context.contents.push_back({context.program.arena.list(expressions), context.program.arena.list(calls)});
+    std::vector<Reference>& references = context.graph.emplace_back();
+    for (const checked::Expr* call : calls)
+      if (const auto reference = reference_of(*call)) references.push_back(*reference);
   }
 }
 
@@ -74,15 +95,17 @@ std::optional<checked::Program> check(
   if (diagnostics.has_errors()) return std::nullopt;
   context.program.main = (*function)->index;
   context.program.raw_names = context.raw_names;
+  list_contents(context);
+  const ProgramRoots roots(context);
   describe_variables(context);
   if (is_unit_value)
     for (const Variable& variable : context.scope.variables())
       if (is_unit_value(unit, variable.name)) diagnostics.report(Diag::HidesUnitValue, variable.span, {variable.name, variable.name});
   check_variable_use(program, context);
-  check_writers(context);
-  check_calls(context.program, unit, sources, diagnostics);
+  check_writers(context, roots);
+  check_calls(context);
   check_sbus_objects(context);
-  check_commands(context);
+  check_commands(context, roots);
   if (diagnostics.has_errors()) return std::nullopt;
   context.program.observers = std::make_shared<const Observers>(context);
   return std::move(context.program);

@@ -116,11 +116,13 @@ class Slips {
 
   // The blanks before a statement that is the first of its line.
   std::optional<std::string_view> margin(Location at) const {
-    if (at.in_macro()) return std::nullopt;
-    const Position place = sources_.position(at);
-    if (place.file == nullptr) return std::nullopt;
-    const std::string_view before = SourceMap::line_text(*place.file, place.line).substr(0, place.column - 1);
-    return before.find_first_not_of(" \t") == std::string_view::npos ? std::optional(before) : std::nullopt;
+    const SourceFile* file = at.in_macro() ? nullptr : sources_.file_of(at);
+    if (file == nullptr) return std::nullopt;
+    const uint32_t end = at.value - file->base;
+    uint32_t begin = end;
+    while (begin > 0 && (file->text[begin - 1] == ' ' || file->text[begin - 1] == '\t')) --begin;
+    if (begin > 0 && file->text[begin - 1] != '\n') return std::nullopt;
+    return std::string_view(file->text).substr(begin, end - begin);
   }
 
   std::string line(Location at) const { return fmt::format("{}", sources_.position(at).line); }
@@ -170,10 +172,11 @@ class Slips {
 
   // A statement behind `if (a) x;` in the column of x.
   void check_next(const ast::Stmt& stmt, const ast::Stmt& next) {
-    const auto column = margin(next.span.begin);
+    auto body = last_body(stmt);
+    const auto column = body ? margin(next.span.begin) : std::nullopt;
     if (!column || std::holds_alternative<ast::Case>(next.node) || std::holds_alternative<ast::Default>(next.node)) return;
     const ast::Stmt* guard = &stmt;
-    for (auto body = last_body(stmt); body; body = last_body(*guard)) {
+    for (; body; body = last_body(*guard)) {
       const auto outer = margin(guard->span.begin);
       const auto own = margin(body->stmt->span.begin);
       const bool plain = !std::holds_alternative<ast::Block>(body->stmt->node) &&

@@ -29,8 +29,8 @@ struct Assigned {
 
 class StateCheck {
  public:
-  StateCheck(Context& context, const ProgramRoots& roots)
-      : context_(context), roots_(roots), written_(context.program), by_root_(roots.roots.size()) {
+  StateCheck(Context& context, const ProgramRoots& roots, const Written& written)
+      : context_(context), roots_(roots), written_(written), by_root_(roots.roots.size()) {
     for (const Variable& variable : context.scope.variables())
       if (variable.storage == Storage::Global)
         for (uint32_t n = variable.number; n < variable.number + variable.type.size() && n < kMaxNumbers; ++n)
@@ -45,7 +45,8 @@ class StateCheck {
   void run() {
     const checked::Program& program = context_.program;
     for (size_t n = 0; n < program.functions.size(); ++n)
-      if (roots_.alive[n]) checked::walk(*program.functions[n].body, [&](const checked::Expr& expr) { collect(expr); });
+      if (roots_.alive[n])
+        for (const checked::Expr* expr : context_.contents[n].expressions) collect(*expr);
     for (size_t n = 0; n < program.functions.size(); ++n) {
       if (!roots_.alive[n]) continue;
       function_ = n;
@@ -216,7 +217,7 @@ class StateCheck {
 
   Context& context_;
   const ProgramRoots& roots_;
-  Written written_;
+  const Written& written_;
   std::vector<Numbers> by_root_;
   Numbers own_;  // globals that only the program's own text writes
   std::map<uint32_t, Assigned> assigned_;
@@ -226,6 +227,8 @@ class StateCheck {
 
 }  // namespace
 
-void check_states(Context& context, const ProgramRoots& roots) { StateCheck(context, roots).run(); }
+void check_states(Context& context, const ProgramRoots& roots, const Written& written) {
+  StateCheck(context, roots, written).run();
+}
 
 }  // namespace ipos::compiler

@@ -4,9 +4,10 @@
 
 #include "compiler/sema/context.hpp"
 #include "compiler/sema/program_roots.hpp"
+#include "compiler/sema/written.hpp"
 
 namespace ipos::compiler {
 
-void check_states(Context& context, const ProgramRoots& roots);
+void check_states(Context& context, const ProgramRoots& roots, const Written& written);
 
 }  // namespace ipos::compiler

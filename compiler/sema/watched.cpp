@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "compiler/sema/expressions.hpp"
-#include "compiler/sema/walk.hpp"
 #include "vm/isa/blocks.hpp"
 
 namespace ipos::compiler {
@@ -35,15 +34,16 @@ class Finder {
   explicit Finder(const Context& context) : context_(context) {}
 
   Watched run(const std::vector<bool>& used) {
-    const auto each = [&](auto visit) {
+    const auto each = [&](const auto& part, auto visit) {
       for (size_t n = 0; n < used.size(); ++n)
-        if (used[n]) checked::walk(*context_.program.functions[n].body, visit);
+        if (used[n])
+          for (const checked::Expr* expr : context_.contents[n].*part) visit(*expr);
     };
-    each([&](const checked::Expr& expr) {
+    each(&Contents::calls, [&](const checked::Expr& expr) {
       if (const auto* call = std::get_if<checked::SystemCall>(&expr.node)) look(*call, expr.span);
     });
     if (found_.empty()) return std::move(out_);
-    each([&](const checked::Expr& expr) {
+    each(&Contents::expressions, [&](const checked::Expr& expr) {
       const auto* assign = std::get_if<checked::Assign>(&expr.node);
       if (assign == nullptr || assign->target.offset != nullptr) return;
       const auto number = static_cast<uint32_t>(assign->target.number);

@@ -16,7 +16,7 @@ using checked::ExprPtr;
 
 class Writers {
  public:
-  explicit Writers(Context& context) : context_(context), roots_(context.program) {
+  Writers(Context& context, const ProgramRoots& roots) : context_(context), roots_(roots) {
     for (const ProgramRoot& root : roots_.roots) beside_.push_back(lane(root));
   }
 
@@ -24,11 +24,9 @@ class Writers {
     for (const Variable& variable : context_.scope.variables())
       if (variable.storage != Storage::Alias) several(variable);
     for (size_t n = 0; n < context_.program.functions.size(); ++n) {
-      const checked::Stmt* body = context_.program.functions[n].body;
-      if (body == nullptr || roots_.of[n].empty()) continue;
-      checked::walk(*body, [&](const checked::Expr& expr) {
-        if (const auto* node = std::get_if<checked::Assign>(&expr.node)) update(*node, expr.span, n);
-      });
+      if (roots_.of[n].empty()) continue;
+      for (const checked::Expr* expr : context_.contents[n].expressions)
+        if (const auto* node = std::get_if<checked::Assign>(&expr->node)) update(*node, expr->span, n);
     }
   }
 
@@ -124,13 +122,13 @@ class Writers {
   }
 
   Context& context_;
-  ProgramRoots roots_;
+  const ProgramRoots& roots_;
   std::vector<size_t> beside_;  // the lane of each root
   std::vector<size_t> writing_;
 };
 
 }  // namespace
 
-void check_writers(Context& context) { Writers(context).run(); }
+void check_writers(Context& context, const ProgramRoots& roots) { Writers(context, roots).run(); }
 
 }  // namespace ipos::compiler

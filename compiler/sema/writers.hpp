@@ -2,9 +2,10 @@
 #pragma once
 
 #include "compiler/sema/context.hpp"
+#include "compiler/sema/program_roots.hpp"
 
 namespace ipos::compiler {
 
-void check_writers(Context& context);
+void check_writers(Context& context, const ProgramRoots& roots);
 
 }  // namespace ipos::compiler

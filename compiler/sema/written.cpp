@@ -26,20 +26,15 @@ std::optional<size_t> called_by(const checked::Expr& expr) {
 }  // namespace
 
 // Each function by itself, then what those write that it calls, until nothing is new: functions may call each other in a circle.
-Written::Written(const checked::Program& program) : of_(program.functions.size()) {
-  std::vector<std::vector<size_t>> calls(of_.size());
-  for (size_t n = 0; n < of_.size(); ++n) {
-    if (program.functions[n].body == nullptr) continue;
-    checked::walk(*program.functions[n].body, [&](const checked::Expr& inner) {
-      add_one(inner, of_[n]);
-      if (const auto called = called_by(inner)) calls[n].push_back(*called);
-    });
-  }
+Written::Written(const Context& context) : of_(context.contents.size()) {
+  for (size_t n = 0; n < of_.size(); ++n)
+    for (const checked::Expr* expr : context.contents[n].expressions) add_one(*expr, of_[n]);
   for (bool changed = true; changed;) {
     changed = false;
     for (size_t n = of_.size(); n-- > 0;) {
       const Numbers before = of_[n];
-      for (const size_t called : calls[n]) of_[n] |= of_[called];
+      for (const Reference& reference : context.graph[n])
+        if (reference.kind == ReferenceKind::Call) of_[n] |= of_[reference.function];
       changed |= of_[n] != before;
     }
   }

@@ -4,7 +4,7 @@
 #include <bitset>
 #include <vector>
 
-#include "compiler/sema/checked.hpp"
+#include "compiler/sema/context.hpp"
 #include "compiler/sema/ranges.hpp"
 
 namespace ipos::compiler {
@@ -13,7 +13,7 @@ using Numbers = std::bitset<kMaxNumbers>;
 
 class Written {
  public:
-  explicit Written(const checked::Program& program);
+  explicit Written(const Context& context);
 
   // What a pointer writes is not among it: whose number is taken must be looked up beside.
   void add(const checked::Stmt& stmt, Numbers& numbers) const;

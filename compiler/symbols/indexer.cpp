@@ -2,6 +2,8 @@
 // the dot through the words, which works in a broken statement as well.
 #include "compiler/symbols/indexer.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -11,7 +13,8 @@
 namespace ipos::compiler {
 
 const SourceFile* Indexer::canonical(const SourceFile* file) {
-  return files_.emplace(identity(*file), file).first->second;
+  if (file != asked_.first) asked_ = {file, files_.emplace(identity(*file), file).first->second};
+  return asked_.second;
 }
 
 // Where the word is written, also when a macro brought it to its place. Names longer than the language's
@@ -26,8 +29,13 @@ Place Indexer::place(Span span) {
   return {canonical(file), first, std::min(last, static_cast<uint32_t>(file->text.size()))};
 }
 
+// A name, of a member behind that of its structure.
+std::string Indexer::id_of(const std::string& container, std::string_view name) {
+  return container.empty() ? std::string(name) : fmt::format("{}.{}", container, name);
+}
+
 size_t Indexer::add_symbol(IndexedSymbol symbol) {
-  const auto [at, fresh] = ids_.emplace(std::pair(symbol.container, symbol.name), index_.symbols.size());
+  const auto [at, fresh] = ids_.emplace(id_of(symbol.container, symbol.name), index_.symbols.size());
   if (!fresh) return at->second;
   const size_t id = index_.symbols.size();
   if (symbol.definition) occurrences_[*symbol.definition] = {*symbol.definition, id, true, symbol.number};
@@ -36,7 +44,9 @@ size_t Indexer::add_symbol(IndexedSymbol symbol) {
 }
 
 void Indexer::add_occurrence(Place where, size_t symbol, std::optional<uint32_t> number) {
-  if (where.file != nullptr) occurrences_.try_emplace(where, Occurrence{where, symbol, false, number});
+  if (where.file == nullptr) return;
+  const auto behind = last_ == occurrences_.end() ? last_ : std::next(last_);
+  last_ = occurrences_.try_emplace(behind, where, Occurrence{where, symbol, false, number});
 }
 
 // All #defines of one name are one symbol: which of them counts is a matter of conditions.
@@ -137,8 +147,7 @@ void Indexer::add_declarations(const ast::Program& tree) {
 
 // Names that are no macro: of the program, H variables, system functions.
 std::optional<size_t> Indexer::symbol_of(std::string_view name) {
-  if (const auto found = ids_.find(std::pair<std::string, std::string>("", name)); found != ids_.end())
-    return found->second;
+  if (const auto found = ids_.find(name); found != ids_.end()) return found->second;
   IndexedSymbol symbol;
   uint32_t number = 0;
   if (raw_number(name, number)) {
@@ -157,7 +166,7 @@ std::optional<size_t> Indexer::symbol_of(std::string_view name) {
 }
 
 std::optional<size_t> Indexer::member_of(const StructType& type, std::string_view name) {
-  const auto found = ids_.find(std::pair<std::string, std::string>(type.name, name));
+  const auto found = ids_.find(id_of(type.name, name));
   return found == ids_.end() ? std::nullopt : std::optional(found->second);
 }
 
@@ -264,11 +273,8 @@ void Indexer::add_bodies(const PreprocessRecord& record) {
 void Indexer::finish(const PreprocessRecord& record) {
   for (const PreprocessRecord::Include& include : record.includes)
     index_.includes.push_back({place(include.header), canonical(include.file)});
+  index_.occurrences.reserve(occurrences_.size());
   for (const auto& [where, occurrence] : occurrences_) index_.occurrences.push_back(occurrence);
-  std::sort(
-      index_.occurrences.begin(), index_.occurrences.end(), [](const Occurrence& a, const Occurrence& b) {
-        return std::pair(a.place.file->base, a.place.begin) < std::pair(b.place.file->base, b.place.begin);
-      });
 }
 
 }  // namespace ipos::compiler

@@ -1,9 +1,12 @@
 // Makes an index: first the symbols, then every word of the text that means one of them.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <set>
 #include <span>
+#include <tuple>
+#include <unordered_map>
 
 #include "compiler/ast/ast.hpp"
 #include "compiler/sema/scope.hpp"
@@ -38,6 +41,7 @@ class Indexer {
 
   Place place(Span span);
   const SourceFile* canonical(const SourceFile* file);
+  static std::string id_of(const std::string& container, std::string_view name);
   size_t add_symbol(IndexedSymbol symbol);
   void add_structure(const StructType& type, Span extent);
   void add_occurrence(Place where, size_t symbol, std::optional<uint32_t> number = std::nullopt);
@@ -47,12 +51,27 @@ class Indexer {
   std::optional<size_t> symbol_of(std::string_view name);
   std::optional<size_t> member_of(const StructType& type, std::string_view name);
 
+  // The files in the order in which they were read.
+  struct InText {
+    bool operator()(const Place& a, const Place& b) const { return key(a) < key(b); }
+    static std::tuple<uint32_t, uint32_t, uint32_t> key(const Place& place) {
+      return {place.file == nullptr ? 0 : place.file->base, place.begin, place.end};
+    }
+  };
+  struct HashOfName {
+    using is_transparent = void;
+    size_t operator()(std::string_view name) const { return std::hash<std::string_view>()(name); }
+  };
+  using Occurrences = std::map<Place, Occurrence, InText>;
+
   ProgramIndex& index_;
   const Scope& scope_;
-  std::map<Place, Occurrence> occurrences_;
-  std::map<std::pair<std::string, std::string>, size_t, std::less<>> ids_;  // container and name
+  Occurrences occurrences_;
+  Occurrences::iterator last_ = occurrences_.end();  // added last: the next one mostly stands behind it
+  std::unordered_map<std::string, size_t, HashOfName, std::equal_to<>> ids_;  // see id_of()
   std::map<std::string, size_t, std::less<>> macros_;
   std::map<std::string, const SourceFile*, std::less<>> files_;
+  std::pair<const SourceFile*, const SourceFile*> asked_;  // of canonical() the last file, and what it was
 };
 
 }  // namespace ipos::compiler

@@ -1,6 +1,6 @@
-// ipos_bench_compile [--source] [--once] [--most-allocations N] [--start COMMAND...]
+// ipos_bench_compile [--source [STATIONS]] [--once] [--most-allocations N] [--start COMMAND...]
 // Compiles the long program of dense_program.hpp again and again and prints time and heap allocations of one
-// compilation. --source prints the program instead, --once compiles it once (for callgrind),
+// compilation. --source prints the program instead, or one of as many stations, --once compiles it once (for callgrind),
 // --most-allocations fails when there are more than N. --start runs a command many times and prints what its
 // process takes from start to end.
 #include <spawn.h>
@@ -71,7 +71,8 @@ int run_command(char** command) {
 int main(int argc, char** argv) {
   const std::string_view mode = argc > 1 ? argv[1] : "";
   if (mode == "--start" && argc > 2) return run_command(argv + 2);
-  const std::string source = bench::dense_program();
+  const int stations = mode == "--source" && argc > 2 ? std::atoi(argv[2]) : bench::kDenseStations;
+  const std::string source = bench::dense_program(stations);
   if (mode == "--source") return std::fputs(source.c_str(), stdout) < 0;
 
   const size_t before = tests::allocations();

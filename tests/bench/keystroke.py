@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""How long the language server takes for a keystroke: a plant of 64 stations, a letter at a time.
+"""How long the language server takes for a keystroke: a letter at a time in a plant of 64 stations, or in a program.
 
-    keystroke.py IPOS [--stations 64] [--keys 20]
+    keystroke.py IPOS [--stations 64] [--program FILE.IPC] [--keys 20]
 
 Each key is a didChange, then completion at the cursor; what counts is the time until the answer and until the
-diagnostics of the new text, and the processor time of the server. docs/inside/performance.md has the figures.
+diagnostics of the new text, and the processor time of the server. docs/inside/performance.md has the figures;
+`ipos_bench_compile --source STATIONS` writes programs, 63 stations in 3037 lines.
 """
 import argparse
 import json
@@ -48,6 +49,24 @@ class Server:
             if message.get("id") == self.id:
                 return message.get("result")
 
+    # Its diagnostics come before the answer where the program is whole, else behind it.
+    def key(self, uri, version, line, column, letter):
+        begin = time.monotonic()
+        self.notify("textDocument/didChange", {"textDocument": {**uri, "version": version}, "contentChanges": [
+            {"range": {"start": {"line": line, "character": column}, "end": {"line": line, "character": column}}, "text": letter}]})
+        line, column = (line + 1, 0) if letter == "\n" else (line, column + 1)
+        self.id += 1
+        self.send({"id": self.id, "method": "textDocument/completion",
+                   "params": {"textDocument": uri, "position": {"line": line, "character": column}}})
+        answered, shown = 0, 0
+        while not answered or not shown:
+            message = self.receive()
+            if message.get("id") == self.id:
+                answered = time.monotonic() - begin
+            if message.get("method") == "textDocument/publishDiagnostics":
+                shown = time.monotonic() - begin
+        return line, column, answered, shown
+
     def diagnostics(self):
         while True:
             message = self.receive()
@@ -59,37 +78,46 @@ class Server:
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
+def write_plant(folder, stations):
+    """The plant, and where to type: rows that are wrong until they are whole, and then make the plant anew."""
+    text = '[[bus]]\nname = "sbus"\nkind = "can"\nbaud = 500000\n'
+    for n in range(stations):
+        (folder / f"P{n}.IPC").write_text(PROGRAM)
+        text += (f'[[station]]\nname = "unit{n}"\nunit = "mdxb"\nprogram = "P{n}.IPC"\nsbus = "sbus"\n'
+                 f'[station.parameters]\nP881 = {n}\nP130 = "2 s"\n')
+    return "plant.toml", text, (text.count("\n"), 0), "P131 = 5\nP132 = 5\nP136 = 5\n"
+
+
+def read_program(file):
+    """The program, and where to type: behind a statement in its middle."""
+    text = Path(file).read_text()
+    lines = text.split("\n")
+    line = next(n for n in range(len(lines) // 2, len(lines)) if lines[n].endswith(";"))
+    return "program.IPC", text, (line, len(lines[line])), " lTarget1 = 12;"
+
+
 def main():
     options = argparse.ArgumentParser()
     options.add_argument("ipos")
     options.add_argument("--stations", type=int, default=64)
+    options.add_argument("--program")
     options.add_argument("--keys", type=int, default=20)
     asked = options.parse_args()
-    with tempfile.TemporaryDirectory() as folder:
-        text = '[[bus]]\nname = "sbus"\nkind = "can"\nbaud = 500000\n'
-        for n in range(asked.stations):
-            (Path(folder) / f"P{n}.IPC").write_text(PROGRAM)
-            text += (f'[[station]]\nname = "unit{n}"\nunit = "mdxb"\nprogram = "P{n}.IPC"\nsbus = "sbus"\n'
-                     f'[station.parameters]\nP881 = {n}\nP130 = "2 s"\n')
-        path = Path(folder) / "plant.toml"
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        name, text, (line, column), typed = read_program(asked.program) if asked.program else write_plant(folder, asked.stations)
+        path = folder / name
         path.write_text(text)
         uri = {"uri": f"file://{path}"}
         server = Server(asked.ipos, folder)
-        server.notify("textDocument/didOpen", {"textDocument": {**uri, "languageId": "toml", "version": 1, "text": text}})
+        server.notify("textDocument/didOpen", {"textDocument": {
+            **uri, "languageId": "ipos" if asked.program else "toml", "version": 1, "text": text}})
         server.diagnostics()
-        line, column = text.count("\n"), 0
         answers, shown, begin_cpu = [], [], server.cpu()
-        # Rows that are wrong until they are whole, and then make the plant anew.
-        for n, letter in enumerate(("P131 = 5\nP132 = 5\nP136 = 5\n" * asked.keys)[: asked.keys]):
-            begin = time.monotonic()
-            at = {"line": line, "character": column}
-            server.notify("textDocument/didChange", {"textDocument": {**uri, "version": n + 2}, "contentChanges": [
-                {"range": {"start": at, "end": at}, "text": letter}]})
-            line, column = (line + 1, 0) if letter == "\n" else (line, column + 1)
-            server.request("textDocument/completion", {"textDocument": uri, "position": {"line": line, "character": column}})
-            answers.append(time.monotonic() - begin)
-            server.diagnostics()
-            shown.append(time.monotonic() - begin)
+        for n in range(asked.keys):
+            line, column, answer, diagnostics = server.key(uri, n + 2, line, column, typed[n % len(typed)])
+            answers.append(answer)
+            shown.append(diagnostics)
         used = (server.cpu() - begin_cpu) / asked.keys
         server.process.kill()
     for name, times in (("completion", answers), ("diagnostics", shown)):

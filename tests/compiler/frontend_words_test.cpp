@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 
+#include "compiler/preprocess/word_filter.hpp"
 #include "tests/compiler/frontend_run.hpp"
 
 namespace ipos::tests {
@@ -24,6 +26,33 @@ void expect_read_as(const std::string& wrong, const std::string& right,
 void expect_statement_read_as(const std::string& wrong, const std::string& right,
                               const std::vector<std::string>& codes) {
   expect_read_as("main() { " + wrong + " }", "main() { " + right + " }", codes);
+}
+
+// What was added is always found, in capitals, too; a word of another length or beginning is told from it.
+TEST(FrontendWords, FilterKnowsItsWords) {
+  compiler::WordFilter none;
+  compiler::WordFilter words;
+  const std::vector<std::string> all = {"a", "switch", "Z9_", "_Wait", std::string(31, 'n'), std::string(32, 'n'), std::string(40, 'n')};
+  for (const std::string& word : all) words.add(word);
+  for (std::string word : all) {
+    EXPECT_FALSE(none.may_have(word)) << word;
+    EXPECT_TRUE(words.may_have(word)) << word;
+    std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return std::toupper(c); });
+    EXPECT_TRUE(words.may_have(word)) << word;
+  }
+  EXPECT_FALSE(words.may_have("switches"));
+  EXPECT_FALSE(words.may_have("twitch"));
+  EXPECT_FALSE(words.may_have(""));
+}
+
+// A macro of every length is replaced, and one that is undefined again is not.
+TEST(FrontendWords, MacrosOfEveryLength) {
+  for (size_t length = 1; length <= 32; ++length) {
+    const std::string name(length, 'm');
+    expect_read_as("#define " + name + " 5\nlong x; main() { x = " + name + "; }", "long x; main() { x = 5; }", {});
+    expect_read_as("#define " + name + " 5\n#undef " + name + "\nlong " + name + "; main() { " + name + " = 5; }",
+                   "long " + name + "; main() { " + name + " = 5; }", {});
+  }
 }
 
 TEST(FrontendWords, OperatorsOfPlcs) {

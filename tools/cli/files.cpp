@@ -30,10 +30,16 @@ std::set<FileIdentity> opened;
 
 bool is_standard_input(const std::string& path) { return path == "-" || path == "/dev/stdin"; }
 
-// Of a file that is not there: perhaps its neighbour was meant.
-std::string missing(const std::string& path) {
-  const std::string why = std::strerror(errno);
-  if (errno != ENOENT) return why;
+// Why a file is not open.
+struct Reason {
+  std::string text;
+  bool missing = false;
+};
+
+// For who asked for the file. When it is not there, perhaps its neighbour was meant.
+std::string told(const std::string& path, const Reason& reason) {
+  const std::string& why = reason.text;
+  if (!reason.missing) return why;
   const std::filesystem::path asked(path);
   const std::vector<std::string> names = list_files(asked.parent_path().string());
   const std::string_view near =
@@ -52,15 +58,15 @@ std::optional<std::string> trouble(const struct stat& info, size_t limit) {
   return std::nullopt;
 }
 
-tl::expected<Descriptor, std::string> open_regular(const std::string& path, size_t limit) {
+tl::expected<Descriptor, Reason> open_regular(const std::string& path, size_t limit) {
   struct stat info {};
-  if (!stdlib::is_plain(path)) return tl::unexpected(std::string("a file name has no control characters"));
-  if (!look_at(path, info)) return tl::unexpected(missing(path));
-  if (auto why = trouble(info, limit)) return tl::unexpected(std::move(*why));
+  if (!stdlib::is_plain(path)) return tl::unexpected(Reason{"a file name has no control characters"});
+  if (!look_at(path, info)) return tl::unexpected(Reason{std::strerror(errno), errno == ENOENT});
+  if (auto why = trouble(info, limit)) return tl::unexpected(Reason{std::move(*why)});
   Descriptor file = open_to_read(path);
   if (!file.is_open() || fstat(file.get(), &info) != 0)
-    return tl::unexpected(std::string(std::strerror(errno)));
-  if (auto why = trouble(info, limit)) return tl::unexpected(std::move(*why));
+    return tl::unexpected(Reason{std::strerror(errno)});
+  if (auto why = trouble(info, limit)) return tl::unexpected(Reason{std::move(*why)});
   const std::lock_guard lock(opened_mutex);
   if (const auto file_identity = identity_of(file)) opened.insert(*file_identity);
   return file;
@@ -84,7 +90,7 @@ tl::expected<std::string, std::string> read_all(const Descriptor& file, size_t l
 Descriptor open_input(const std::string& path, size_t limit) {
   if (is_standard_input(path)) return Descriptor(dup(STDIN_FILENO));
   auto file = open_regular(path, limit);
-  if (!file) throw Failure(kNoInput, fmt::format("{}: {}", path, file.error()));
+  if (!file) throw Failure(kNoInput, fmt::format("{}: {}", path, told(path, file.error())));
   return std::move(*file);
 }
 
@@ -96,18 +102,20 @@ std::string read_file(const std::string& path, size_t limit) {
 
 tl::expected<std::string, std::string> load_file(const std::string& path) {
   const auto file = open_regular(path, kInputLimit);
-  if (!file) return tl::unexpected(file.error());
+  if (!file) return tl::unexpected(told(path, file.error()));
   return read_all(*file, kInputLimit);
 }
 
 std::optional<std::string> try_read_file(const std::string& path) {
-  auto text = load_file(path);
+  const auto file = open_regular(path, kInputLimit);
+  if (!file) return std::nullopt;
+  auto text = read_all(*file, kInputLimit);
   return text ? std::optional(*std::move(text)) : std::nullopt;
 }
 
 std::optional<std::string> unreadable(const std::string& path) {
   const auto file = open_regular(path, kInputLimit);
-  return file ? std::nullopt : std::optional(file.error());
+  return file ? std::nullopt : std::optional(told(path, file.error()));
 }
 
 bool is_folder(const std::string& path) {

@@ -66,22 +66,29 @@ std::string structure_before(const Program& program, std::string_view text) {
   return structure;
 }
 
-Json item(const std::string& label, ItemKind kind, const std::string& detail, const std::string& text = {}) {
-  Json one{{"label", label}, {"kind", static_cast<int>(kind)}};
-  if (!detail.empty()) one["detail"] = detail;
-  if (!text.empty()) one["documentation"] = {{"kind", "markdown"}, {"value", text}};
+// Member by member: there are hundreds with each key, and a list in braces would be made twice.
+Json item(std::string label, ItemKind kind, std::string detail, std::string text = {}) {
+  Json one = Json::object();
+  one["label"] = std::move(label);
+  one["kind"] = static_cast<int>(kind);
+  if (!detail.empty()) one["detail"] = std::move(detail);
+  if (!text.empty()) {
+    Json& documentation = one["documentation"];
+    documentation["kind"] = "markdown";
+    documentation["value"] = std::move(text);
+  }
   return one;
 }
 
 Json symbol_item(const Program& program, const IndexedSymbol& symbol) {
-  const std::string text = describe(program, symbol, std::nullopt);
+  std::string text = describe(program, symbol, std::nullopt);
   const std::string number = symbol.number ? " H" + std::to_string(*symbol.number) : "";
   switch (symbol.kind) {
-    case SymbolKind::Macro: return item(symbol.name, kConstant, symbol.type, text);
-    case SymbolKind::Function: return item(symbol.name, kFunction, "function", text);
-    case SymbolKind::Structure: return item(symbol.name, kStruct, "structure", text);
-    case SymbolKind::Member: return item(symbol.name, kField, symbol.type, text);
-    default: return item(symbol.name, kVariable, symbol.type + number, text);
+    case SymbolKind::Macro: return item(symbol.name, kConstant, symbol.type, std::move(text));
+    case SymbolKind::Function: return item(symbol.name, kFunction, "function", std::move(text));
+    case SymbolKind::Structure: return item(symbol.name, kStruct, "structure", std::move(text));
+    case SymbolKind::Member: return item(symbol.name, kField, symbol.type, std::move(text));
+    default: return item(symbol.name, kVariable, symbol.type + number, std::move(text));
   }
 }
 

@@ -295,7 +295,7 @@ void Server::respell(Json& value) const {
 
 void Server::respond(const Json& id, Json result) {
   respell(result);
-  send_({{"jsonrpc", "2.0"}, {"id", id}, {"result", result}});
+  send_({{"jsonrpc", "2.0"}, {"id", id}, {"result", std::move(result)}});
 }
 
 void Server::refuse(const Json& id, ErrorCode code, const std::string& message) {

@@ -11,7 +11,7 @@ namespace {
 constexpr std::string_view kFileScheme = "file://";
 constexpr std::string_view kLineEnds = "\r\n";  // LF, CR LF, or CR alone (LSP 3.17, text documents)
 
-bool is_line_end(char c) { return kLineEnds.find(c) != std::string_view::npos; }
+bool is_line_end(char c) { return c == '\n' || c == '\r'; }  // asked of each character of a text
 
 int hex_digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
@@ -102,8 +102,9 @@ uint32_t offset_of(std::string_view text, const Json& position, Encoding encodin
   if (!position.is_object()) throw RequestError(ErrorCode::InvalidParams, "no position");
   size_t at = 0;
   for (size_t line = number("line"); line != 0; --line) {
-    const size_t end = text.find_first_of(kLineEnds, at);
-    if (end == std::string_view::npos) return static_cast<uint32_t>(text.size());
+    size_t end = at;
+    while (end < text.size() && !is_line_end(text[end])) ++end;
+    if (end == text.size()) return static_cast<uint32_t>(end);
     at = end + (text.substr(end).starts_with("\r\n") ? 2 : 1);
   }
   for (size_t left = number("character"); at < text.size() && !is_line_end(text[at]) && left != 0;) {

@@ -2,6 +2,7 @@
 #include "vm/isa/blocks.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace ipos::vm {
 namespace {
@@ -11,6 +12,16 @@ constexpr BlockInfo kBlocks[] = {
   {Opcode::opcode, operand, keyword, variables, BlockUse::use, type},
 #include "vm/isa/blocks.def"
 };
+
+// Bit n of word m: the command 32 * m + n has rows. Most have none, and the verifier asks of each.
+constexpr auto kWithBlocks = [] {
+  std::array<uint32_t, 8> bits{};
+  for (const BlockInfo& row : kBlocks) {
+    const auto code = static_cast<uint8_t>(row.opcode);
+    bits[code / 32] |= 1U << code % 32;
+  }
+  return bits;
+}();
 
 }  // namespace
 
@@ -29,6 +40,8 @@ std::span<const BlockInfo> blocks_of(Opcode opcode, size_t operand, int32_t keyw
 }
 
 uint32_t block_size(const Instruction& instruction, size_t operand) {
+  const auto code = static_cast<uint8_t>(instruction.opcode);
+  if ((kWithBlocks[code / 32] >> code % 32 & 1U) == 0) return 1;
   const Coding& row = coding(instruction.opcode);
   int32_t keyword = kAnyKeyword;
   uint32_t count = 1;

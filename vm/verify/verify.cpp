@@ -2,6 +2,7 @@
 // hit starts. Structures of the communication commands are checked for their whole length.
 #include "vm/verify/verify.hpp"
 
+#include <algorithm>
 #include <bitset>
 
 #include "vm/isa/blocks.hpp"
@@ -83,8 +84,9 @@ class Checker {
 
   uint32_t labels(uint32_t at) {
     if (!starts_[at]) return 1;
+    const Coding& row = coding(static_cast<Opcode>(code_[at] & 0xFF));
+    if (std::find(row.kinds.begin(), row.kinds.end(), OperandKind::Label) == row.kinds.end()) return row.words;
     const Decoded decoded = decode(code_, at);
-    const Coding& row = coding(decoded.instruction.opcode);
     for (auto value = decoded.instruction.operands.begin(); const OperandKind kind : row.kinds) {
       const auto target = static_cast<uint32_t>(*value++);
       if (kind == OperandKind::Label && (target >= code_.size() || !starts_[target]))
