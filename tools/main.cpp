@@ -60,6 +60,7 @@ bool is_clicked(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   ipos::tools::prepare_streams();
+  ipos::tools::join_rooms();
   std::vector<char*> words(argv, argv + argc);
   char serve[] = "serve", open[] = "--open";
   const bool clicked = is_clicked(argc, argv);

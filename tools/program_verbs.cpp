@@ -3,6 +3,9 @@
 #include "tools/program_verbs.hpp"
 
 #include "tools/cli/verbs.hpp"
+#if IPOS_HAS_debug
+#include "tools/debug/onlookers.hpp"
+#endif
 
 #define IPOS_IF_1(add) add
 #define IPOS_IF_0(add) nullptr
@@ -48,5 +51,11 @@ constexpr VerbRow kVerbs[] = {
 }  // namespace
 
 std::span<const VerbRow> program_verbs() { return kVerbs; }
+
+void join_rooms() {
+#if IPOS_HAS_debug
+  debug::offer_onlookers();  // of `ipos run --realtime`
+#endif
+}
 
 }  // namespace ipos::tools

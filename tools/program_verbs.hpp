@@ -19,4 +19,7 @@ struct VerbRow {
 // In the order of --help.
 std::span<const VerbRow> program_verbs();
 
+// What one room of the program has for another; before its verbs.
+void join_rooms();
+
 }  // namespace ipos::tools

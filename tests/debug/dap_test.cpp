@@ -7,6 +7,7 @@
 
 #include "tests/debug/plants.hpp"
 #include "tools/debug/dap.hpp"
+#include "tools/input/sources.hpp"
 
 namespace ipos::tests {
 namespace {
@@ -42,9 +43,10 @@ class Dap : public ::testing::Test {
 
   std::vector<Json> sent_;
   int64_t seq_ = 0;
-  MakePlant plant_ =
-      plant_of({"\nlong lFirst;\nlong aTable[3];\nmain()\n{\n  lFirst = 5;\n  aTable[1] = lFirst;\n"
-                "  lFirst = 6;\n  while (1) {}\n}\n"});
+  static constexpr const char* kText =
+      "\nlong lFirst;\nlong aTable[3];\nmain()\n{\n  lFirst = 5;\n  aTable[1] = lFirst;\n"
+      "  lFirst = 6;\n  while (1) {}\n}\n";
+  MakePlant plant_ = plant_of({kText});
   DapServer server_{[this](const DapLaunch&) { return plant_; },
                     [this](const Json& message) { sent_.push_back(message); }, nullptr};
 };
@@ -231,6 +233,158 @@ TEST_F(Dap, ABlockIsShownByItsText) {
   EXPECT_EQ(ask("setBreakpoints", {{"source", source}, {"breakpoints", Json::array({Json{{"line", 23}}})}})["body"]["breakpoints"][0]["verified"], true);
   EXPECT_EQ(ask("source", {{"sourceReference", 0}})["success"], false);
   EXPECT_EQ(ask("source", {{"sourceReference", 1000}})["success"], false);
+}
+
+// Line 7, aTable[1] = lFirst, is left out; what was skipped stays skipped when the moment comes again.
+TEST_F(Dap, AStatementIsSetAsTheNextOne) {
+  tools::keep_source("P1.IPC", kText);
+  launch();
+  const int thread = ask("threads")["body"]["threads"][0]["id"];
+  const auto targets = [&](int line) {
+    return ask("gotoTargets", {{"source", {{"path", "P1.IPC"}}}, {"line", line}})["body"]["targets"];
+  };
+  const auto line = [&] { return ask("stackTrace", {{"threadId", thread}})["body"]["stackFrames"][0]["line"].get<int>(); };
+  EXPECT_EQ(targets(5).size(), 0U);
+  Json at = targets(8);
+  ASSERT_EQ(at.size(), 1U);
+  EXPECT_EQ(at[0]["label"], "unit1 main");
+  const Json early = ask("goto", {{"threadId", thread}, {"targetId", at[0]["id"]}});
+  EXPECT_EQ(early["message"], "nothing of that program has been executed yet");
+  ask("next", {{"threadId", thread}});  // to the first command
+  ask("next", {{"threadId", thread}});
+  EXPECT_EQ(line(), 7);
+  EXPECT_EQ(ask("goto", {{"threadId", thread}, {"targetId", at[0]["id"]}})["success"], false) << "that was before the stop";
+  at = targets(8);
+  EXPECT_EQ(ask("goto", {{"threadId", thread}, {"targetId", at[0]["id"]}})["success"], true);
+  EXPECT_EQ(last_stop()["reason"], "goto");
+  EXPECT_EQ(line(), 8);
+  ask("next", {{"threadId", thread}});
+  EXPECT_EQ(line(), 9);
+  EXPECT_EQ(ask("evaluate", {{"expression", "lFirst"}})["body"]["result"], "6");
+  EXPECT_EQ(ask("evaluate", {{"expression", "aTable[1]"}})["body"]["result"], "0");
+  ask("stepBack", {{"threadId", thread}});
+  EXPECT_EQ(line(), 8);
+  EXPECT_EQ(ask("evaluate", {{"expression", "lFirst"}})["body"]["result"], "5");
+  ask("next", {{"threadId", thread}});
+  EXPECT_EQ(ask("evaluate", {{"expression", "aTable[1]"}})["body"]["result"], "0");
+  ask("goto", {{"threadId", thread}, {"targetId", targets(6)[0]["id"]}});
+  ask("next", {{"threadId", thread}});
+  ask("next", {{"threadId", thread}});
+  EXPECT_EQ(ask("evaluate", {{"expression", "aTable[1]"}})["body"]["result"], "5") << "backward is a jump, too";
+}
+
+TEST_F(Dap, AJumpIsRefusedWithItsReason) {
+  const std::string text =
+      "long a, b, t[9], i;\nOther()\n{\n  a = 7;\n}\nmain()\n{\n  a = (a + b) *\n      (b - 3);\n  Other();\n  _Wait(5);\n"
+                     "  for (i = 0; i < 9; i++)\n  {\n    a = t[i] + 1;\n    t[i] = a;\n  }\n  b = 1;\n  while (1) {}\n}\n";
+  plant_ = plant_of({text});
+  launch();
+  const int thread = ask("threads")["body"]["threads"][0]["id"];
+  const auto targets = [&](int line) {
+    return ask("gotoTargets", {{"source", {{"path", "P1.IPC"}}}, {"line", line}})["body"]["targets"];
+  };
+  const auto refusal = [&](int line) {
+    return ask("goto", {{"threadId", thread}, {"targetId", targets(line)[0]["id"]}}).value("message", "");
+  };
+  tools::keep_source("P1.IPC", text);
+  ask("next", {{"threadId", thread}});  // line 9, which goes on with the statement of line 8
+  EXPECT_EQ(targets(9).size(), 0U);
+  EXPECT_EQ(refusal(4), "P1.IPC:4 is in Other, and unit1 task 1 stands in main: a jump leaves no function");
+  EXPECT_EQ(refusal(17), "");
+  EXPECT_EQ(refusal(11), "");
+  ask("next", {{"threadId", thread}, {"granularity", "instruction"}});
+  EXPECT_EQ(ask("goto", {{"threadId", thread}, {"targetId", 999}}).value("message", ""), "there is no such target");
+  EXPECT_EQ(ask("goto", {{"threadId", 77}, {"targetId", 1}})["success"], false);
+}
+
+// A variable without a name in the program is one of the compiler: line 7 reads what line 6 has put there, line 8 does not.
+TEST_F(Dap, AJumpToWhatNeedsTheCodeBeforeItIsRefused) {
+  tools::keep_source("P1.IPC", kText);
+  compiler::CompileOptions options;
+  options.unit = stdlib::find_unit("mdxb");
+  vm::Image image = *compiler::compile("P1.IPC", "", kText, options).image;
+  std::erase_if(image.symbols, [](const vm::Symbol& symbol) { return symbol.name == "lFirst"; });
+  plant_ = [image] {
+    std::vector<runtime::PlantError> errors;
+    std::vector<std::optional<vm::Image>> images{image};
+    return std::make_unique<runtime::Plant>(
+        runtime::read_plant_file("[[station]]\nname = \"unit1\"\nunit = \"mdxb\"\nprogram = \"P1.IPC\"\n").plant, images, std::nullopt, errors);
+  };
+  launch();
+  const int thread = ask("threads")["body"]["threads"][0]["id"];
+  ask("next", {{"threadId", thread}});
+  const auto jump = [&](int line) {
+    const Json targets = ask("gotoTargets", {{"source", {{"path", "P1.IPC"}}}, {"line", line}})["body"]["targets"];
+    return ask("goto", {{"threadId", thread}, {"targetId", targets[0]["id"]}}).value("message", "");
+  };
+  EXPECT_EQ(jump(7), "P1.IPC:7 goes on with H420, which the code before it computes");
+  EXPECT_EQ(jump(8), "");
+}
+
+// Of the two statements before, the first wrote it; the plant stays where it stands, and references stay good.
+TEST_F(Dap, TheConsoleTellsTheLastWriter) {
+  launch();
+  const int thread = ask("threads")["body"]["threads"][0]["id"];
+  for (int n = 0; n < 3; ++n) ask("next", {{"threadId", thread}});  // to the first command, and behind two
+  const int frame = ask("stackTrace", {{"threadId", thread}})["body"]["stackFrames"][0]["id"];
+  const Json named = ask("scopes", {{"frameId", frame}})["body"]["scopes"][0]["variablesReference"];
+  const size_t sent = sent_.size();
+  const auto who = [&](const std::string& name) {
+    return ask("evaluate", {{"expression", "who " + name}, {"frameId", frame}, {"context", "repl"}});
+  };
+  EXPECT_EQ(who("lFirst")["body"]["result"].get<std::string>().find("lFirst: 0 -> 5 by unit1 task 1, main at P1.IPC:6 ("), 0U);
+  EXPECT_EQ(who("aTable[1]")["body"]["result"].get<std::string>().find("aTable[1]: 0 -> 5 by unit1 task 1, main at P1.IPC:7 ("), 0U);
+  EXPECT_EQ(who("aTable[2]")["body"]["result"], "nobody has changed aTable[2] = 0 so far");
+  EXPECT_EQ(who("lNobody")["success"], false);
+  EXPECT_EQ(sent_.size(), sent + 4) << "a response each, and no stop";
+  EXPECT_EQ(ask("variables", {{"variablesReference", named}})["success"], true);
+  EXPECT_EQ(ask("stackTrace", {{"threadId", thread}})["body"]["stackFrames"][0]["line"], 8);
+  EXPECT_EQ(ask("evaluate", {{"expression", "who lFirst"}, {"context", "watch"}})["success"], false) << "the console alone";
+}
+
+// A command a millisecond, a command a statement.
+TEST_F(Dap, TheCostSinceTheStopBeforeIsTold) {
+  launch();
+  const int thread = ask("threads")["body"]["threads"][0]["id"];
+  const auto cost = [&] {
+    return ask("evaluate", {{"expression", "info cost"}, {"context", "repl"}})["body"]["result"].get<std::string>();
+  };
+  EXPECT_EQ(cost(), "nothing has run since the session began");
+  ask("next", {{"threadId", thread}});
+  ask("next", {{"threadId", thread}});
+  EXPECT_EQ(cost(), "1.000 ms since the stop before\n  unit1 task 1: 1 commands");
+  EXPECT_NE(last_stop()["description"].get<std::string>().find(" ms, 1 commands later"), std::string::npos) << last_stop();
+  ask("stepBack", {{"threadId", thread}});
+  EXPECT_EQ(cost(), "time went back to this stop");
+  EXPECT_EQ(last_stop()["description"].get<std::string>().find("later"), std::string::npos) << last_stop();
+}
+
+// The object is sent each 5 ms, so the third frame comes 10 ms behind the first.
+TEST_F(DapOfAPlant, AFrameStopsThePlantAtItsHitsAndWhereItsConditionHolds) {
+  launch();
+  const auto stops_at = [&](const Json& point) {
+    ask("restart");
+    ask("setFunctionBreakpoints", {{"breakpoints", Json::array({point})}});
+    ask("continue");
+    EXPECT_EQ(last_stop()["reason"], "function breakpoint") << point;
+    return std::stoi(ask("evaluate", {{"expression", "now"}})["body"]["result"].get<std::string>());
+  };
+  const int first = stops_at({{"name", "sbus 40A#*"}});
+  EXPECT_EQ(stops_at({{"name", "sbus 40A#*"}, {"hitCondition", "== 3"}}), first + 10);
+  EXPECT_EQ(stops_at({{"name", "sbus 40A#*"}, {"hitCondition", "%4"}}), first + 15);
+  const int late = stops_at({{"name", "sbus 40A#*"}, {"condition", "now > 42"}});
+  EXPECT_GT(late, 42);
+  EXPECT_LE(late, 49);
+  EXPECT_EQ((late - first) % 5, 0);
+  stops_at({{"name", "sbus 40A#*"}, {"condition", "lNobody"}});
+  EXPECT_NE(last_stop()["text"].get<std::string>().find("lNobody"), std::string::npos) << last_stop();
+}
+
+TEST_F(Dap, SourcesOfAllProgramsAreListed) {
+  launch();
+  const Json sources = ask("loadedSources")["body"]["sources"];
+  ASSERT_EQ(sources.size(), 1U);
+  EXPECT_EQ(sources[0]["name"], "P1.IPC");
 }
 
 TEST_F(DapOfAPlant, AFaultOfADriveStopsThePlant) {

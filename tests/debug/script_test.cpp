@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 
@@ -337,7 +338,7 @@ TEST(DebugScript, AFrameStopsThePlant) {
   const ScriptResult result = run_script({"/bin/sh", "-c",
                                           fmt::format("exec 2>&1; exec '{}' debug '{}' < '{}'", ipos_program(),
                                                       project("examples/scom/scom.toml").string(), input)});
-  for (const char* text : {"Breakpoint 1: frame sbus 400#*\n", "'hello' is no frame", "1   frame sbus 400#*\n", "Breakpoint 1: 400#",
+  for (const char* text : {"Breakpoint 1: frame sbus 400#*\n", "'hello' is no frame", "1   frame sbus 400#*, 0 hits\n", "Breakpoint 1: 400#",
                            " on sbus\n", "there is no breakpoint 1\n", "(2000.000 ms"})
     EXPECT_NE(result.output.find(text), std::string::npos) << text << "\n" << result.output;
   const size_t first = result.output.find("Breakpoint 1: 400#");
@@ -355,6 +356,301 @@ TEST(DebugScript, DisplaysAreShownAtEachStop) {
   EXPECT_EQ(count("2: lCount + 10 = 0x"), 5U) << result.output;
   EXPECT_EQ(count("there is no display 7"), 1U) << result.output;
   EXPECT_EQ(count("3: "), 0U) << result.output;
+}
+
+// A round takes 5 ms: at 8 ms the second one waits. At line 9 of the third, line 7 is done once more.
+TEST(DebugScript, JumpSetsTheNextStatement) {
+  const std::string script =
+      "jump 8\nuntil 8ms\njump 7\nb 9\nc\np lCount\njump MAIN@7\ns\np lCount\njump 1000\njump nobody\nquit\n";
+  const ScriptResult result = debug(script);
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_NE(result.output.find("(ipos) jump 8\nnothing of that program has been executed yet\n"), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("waits inside a command, which must end first\n"), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("lCount = 3\n"), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("lCount = 4\n"), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("no command belongs to 'nobody'\n"), std::string::npos) << result.output;
+  EXPECT_EQ(debug(script, "--no-snapshots").output, result.output);
+}
+
+// Line 9 waits, so at 8 the jump to 9 leaves nothing out but the comparison, and the one back to 7 counts twice in a round.
+TEST(DebugScript, AJumpBackDoesAStatementAgain) {
+  const ScriptResult result = debug("b 8\nc\np lCount\njump 7\nc\np lCount\nrs\np lCount\nquit\n");
+  const size_t one = result.output.find("lCount = 1\n"), two = result.output.find("lCount = 2\n");
+  ASSERT_NE(one, std::string::npos) << result.output;
+  ASSERT_NE(two, std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("lCount = 1\n", two), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("MAIN.IPC:7 ("), std::string::npos) << result.output;
+}
+
+// At each stop its words; `c` among them goes on to the next stop, and the third one has no more to go to.
+TEST(DebugScript, ABreakpointHasWords) {
+  const std::string script = "b 8 if lCount >= 4\ncommands\np lCount * 100\np now\nend\nc\nwatch lWrong\ncommands 2\nrsi\nend\nd 1\nc\np lCount\ncommands 9\nquit\n";
+  const ScriptResult result = debug(script);
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  for (const char* text : {"lCount * 100 = 400\n", "Watchpoint 2: lWrong: 0 -> 1\n", "lCount = 300\n", "there is no breakpoint 9\n"})
+    EXPECT_NE(result.output.find(text), std::string::npos) << text << "\n" << result.output;
+  EXPECT_EQ(debug(script, "--no-snapshots").output, result.output);
+}
+
+TEST(DebugScript, APointThatGoesOnComesAgain) {
+  const ScriptResult result = debug("b 8 if lCount % 100 == 0\ncommands $\np lCount\nc\nend\nuntil 1s\nquit\n", "--for 1s");
+  for (const char* text : {"lCount = 100\n", "lCount = 200\n", "the time to run is over"})
+    EXPECT_NE(result.output.find(text), std::string::npos) << text << "\n" << result.output;
+  EXPECT_EQ(result.output.find("lCount = 300\n"), std::string::npos) << result.output;  // at 1.5 s
+}
+
+// What was saved gives the same list again, in another session.
+TEST(DebugScript, PointsAreSavedAndComeAgain) {
+  const std::string made =
+      "b 8 if lCount > 3\nhits $ >= 2\ntb main\nb *0\ndisable $\ndprintf MAIN.IPC:9,at {lCount}\nwatch lWrong if lCount == 300\ncommands\np lCount\nbt\nend\ndisplay /x lCount\n";
+  const TemporaryFolder folder;
+  const std::string file = (folder.path() / "points").string();
+  const ScriptResult first = debug(made + "info breakpoints\nsave " + file + "\nsave /nobody/there\nquit\n");
+  const ScriptResult again = debug("source " + file + "\nsource nobody\nsource\nsave\ninfo breakpoints\nc\nquit\n");
+  const auto list = [](const std::string& output) {
+    const size_t begin = output.find("info breakpoints\n");
+    return output.substr(begin, output.find("(ipos)", begin) - begin);
+  };
+  EXPECT_EQ(list(again.output), list(first.output)) << read_text(file);
+  EXPECT_NE(list(first.output).find(" at hits >= 2"), std::string::npos) << first.output;
+  EXPECT_NE(list(first.output).find(", disabled"), std::string::npos) << first.output;
+  EXPECT_NE(again.output.find("1: lCount = 0x"), std::string::npos) << again.output;
+  EXPECT_NE(first.output.find("/nobody/there"), std::string::npos) << first.output;
+  EXPECT_NE(again.output.find("nobody"), std::string::npos) << again.output;
+  EXPECT_NE(again.output.find("source needs the name of a file\n"), std::string::npos) << again.output;
+}
+
+// Structures and arrays of them, of this and of another station, by what the program of each has written.
+TEST(DebugScript, WholesAreShownOfEachStation) {
+  const TemporaryFolder folder;
+  folder.write("M.IPC",
+               "typedef struct { long id; long w[2]; } Rec;\nRec rec[2];\nlong arr[3];\nmain()\n{\n  rec[0].id = 7;\n  rec[1].w[1] = 9;\n"
+               "  arr[2] = 20;\n  while (1) {}\n}\n");
+  folder.write("p.toml", "[[station]]\nname = \"u\"\nunit = \"mdxb\"\nprogram = \"M.IPC\"\n[[station]]\nname = \"a\"\nunit = \"mdxb\"\nprogram = \"M.IPC\"\n");
+  folder.write("script", "until 30ms\np rec\np a.rec[1]\np /x a.arr\ndisplay a.rec[0]\nx/2 a.arr\nx rec\nquit\n");
+  const ScriptResult result =
+      run_script({"/bin/sh", "-c", fmt::format("cd '{}' && exec 2>&1; '{}' debug p.toml < script", folder.path().string(), ipos_program())});
+  for (const char* text : {"p rec\nrec[0].id = 7\nrec[0].w = {0, 0}\nrec[1].id = 0\nrec[1].w = {0, 9}\n", "a.rec[1].id = 0\na.rec[1].w = {0, 9}\n",
+                           "a.arr = {0x0, 0x0, 0x14}\n", "display a.rec[0]\na.rec[0].id = 7\na.rec[0].w = {0, 0}\n"})
+    EXPECT_NE(result.output.find(text), std::string::npos) << text << "\n" << result.output;
+}
+
+// What an editor asks in its console while the session goes back over snapshots; the next requests wait until it has its answer.
+TEST(DapSession, TheLastWriterIsToldAcrossSnapshots) {
+  const TemporaryFolder folder;
+  const std::string program = folder.write("MAIN.IPC", kProgram);
+  std::string session;
+  int seq = 0;
+  const auto send = [&](const std::string& command, const std::string& arguments = "{}") {
+    const std::string body = fmt::format(R"({{"type":"request","seq":{},"command":"{}","arguments":{}}})", ++seq, command, arguments);
+    session += fmt::format("Content-Length: {}\r\n\r\n{}", body.size(), body);
+  };
+  send("initialize");
+  send("launch", fmt::format(R"({{"program":"{}","unit":"mdxb"}})", program));
+  send("setBreakpoints", fmt::format(R"({{"source":{{"path":"{}"}},"breakpoints":[{{"line":9,"condition":"lCount == 700"}}]}})", program));
+  send("configurationDone");
+  send("continue", R"({"threadId":2})");
+  send("scopes", R"({"frameId":128})");
+  send("evaluate", R"({"expression":"who lWrong","context":"repl"})");
+  send("variables", R"({"variablesReference":1})");
+  send("evaluate", R"({"expression":"lCount * 1000"})");
+  send("next", R"({"threadId":2})");  // or the end of the session would end the run before
+  send("disconnect");
+  folder.write("session", session);
+  for (const char* options : {"", "--no-snapshots"}) {
+    const ScriptResult result = run_script(
+        {"/bin/sh", "-c", fmt::format("cd '{}' && '{}' dap {} < session 2>&1", folder.path().string(), ipos_program(), options)});
+    EXPECT_EQ(result.exit_code, 0) << options;
+    // The round of 300 has a command more than the 299 before it: 4 * 299 + 2 commands, 5 * 299 + 2 ms.
+    EXPECT_NE(result.output.find("lWrong: 0 -> 1 by MAIN task 1, main at MAIN.IPC:8 (1497.000 ms, 1198 commands)"), std::string::npos)
+        << options << "\n" << result.output;
+    EXPECT_NE(result.output.find("\"result\":\"700000\""), std::string::npos) << options << "\n" << result.output;
+    EXPECT_EQ(result.output.find("\"success\":false"), std::string::npos) << options << "\n" << result.output;
+    size_t stops = 0;
+    for (size_t at = 0; (at = result.output.find("\"event\":\"stopped\"", at)) != std::string::npos; ++at) ++stops;
+    EXPECT_EQ(stops, 3U) << options << "\n" << result.output;
+  }
+}
+
+// A run beside the clock, and a place for its socket that no other test has.
+class AttachedRun : public ::testing::Test {
+ protected:
+  AttachedRun() {
+    setenv("XDG_RUNTIME_DIR", place_.path().c_str(), 1);
+    folder_.write("MAIN.IPC", kProgram);
+  }
+  ~AttachedRun() override { unsetenv("XDG_RUNTIME_DIR"); }
+
+  RunningIpos run(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments{"run", "--unit", "mdxb", "MAIN.IPC", "--realtime"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return {arguments, folder_.path()};
+  }
+  std::vector<std::filesystem::path> sockets() const {
+    std::vector<std::filesystem::path> all;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(place_.path() / "ipos", error)) all.push_back(entry.path());
+    return all;
+  }
+  bool comes(size_t count) const {
+    for (int n = 0; n < 2000 && sockets().size() != count; ++n) usleep(10'000);
+    return sockets().size() == count;
+  }
+  ScriptResult shell(const std::string& command) const {
+    return run_script({"/bin/sh", "-c", fmt::format("cd '{}' && exec 2>&1; {}", folder_.path().string(), command)});
+  }
+  ScriptResult look(const std::string& script, const std::string& option = "--attach") const {
+    folder_.write("script", script);
+    return shell(fmt::format("'{}' debug {} < script", ipos_program(), option));
+  }
+
+  TemporaryFolder folder_, place_;
+};
+
+TEST_F(AttachedRun, IsLookedAtAndNoMore) {
+  RunningIpos running = run();
+  ASSERT_TRUE(comes(1));
+  const ScriptResult first = look("p lCount\np lCount * 0 + 7\ninfo tasks\nbt\nlist\nx/2 lCount\ndisas\nhelp\nquit\n");
+  EXPECT_EQ(first.exit_code, 0) << first.output;
+  for (const char* text : {"looks at the run of MAIN.IPC, which goes on", "MAIN task 1", "lCount * 0 + 7 = 7\n", "lCount++", "#0 main at MAIN.IPC:"})
+    EXPECT_NE(first.output.find(text), std::string::npos) << text << "\n" << first.output;
+  EXPECT_EQ(first.output.find("reverse-continue"), std::string::npos) << "help tells what works: " << first.output;
+  const auto count = [](const std::string& output) {
+    const size_t at = output.find("lCount = ");
+    return at == std::string::npos ? -1 : std::stoi(output.substr(at + 9));
+  };
+  for (const char* word : {"c", "s", "n", "si", "finish", "until 1h", "rc", "rs", "b 7", "tb 7", "watch lCount", "who lCount", "catch 1#", "jump 8",
+                           "set lCount = 1", "save there", "source there", "commands", "dprintf 7,x", "delete", "info cost"}) {
+    const ScriptResult refused = look(std::string(word) + "\nquit\n");
+    EXPECT_NE(refused.output.find("the run is only looked at"), std::string::npos) << word << "\n" << refused.output;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "there"));
+  const int before = count(first.output), after = count(look("p lCount\nquit\n").output);
+  EXPECT_GT(before, 0);
+  EXPECT_GT(after, before) << "it has gone on";
+  running.signal(SIGINT);
+  const CommandResult end = running.wait();
+  EXPECT_NE(end.err.find("real time: "), std::string::npos) << end.err;
+  EXPECT_TRUE(comes(0)) << "its place is gone with it";
+}
+
+TEST_F(AttachedRun, IsChosenByItsProcess) {
+  EXPECT_NE(look("quit\n").output.find("no 'ipos run --realtime' of this user goes on"), std::string::npos);
+  RunningIpos one = run(), other = run();
+  ASSERT_TRUE(comes(2));
+  const ScriptResult several = look("quit\n");
+  EXPECT_NE(several.exit_code, 0);
+  EXPECT_NE(several.output.find("several runs go on: "), std::string::npos) << several.output;
+  for (const auto& socket : sockets()) {
+    const std::string name = socket.filename().string();
+    const std::string process = name.substr(0, name.find('-'));
+    EXPECT_NE(several.output.find(process + " (MAIN)"), std::string::npos) << several.output;
+    EXPECT_NE(look("quit\n", "--attach=" + process).output.find("looks at the run of MAIN.IPC"), std::string::npos);
+  }
+  EXPECT_NE(look("quit\n", "--attach=1").output.find("process 1 is no 'ipos run --realtime' of this user"), std::string::npos);
+  EXPECT_NE(look("quit\n", "--attach=x").output.find("'x' is no number of a process"), std::string::npos);
+  EXPECT_NE(look("quit\n", "--attach MAIN.IPC").output.find("--attach looks at a run, which knows its file"), std::string::npos);
+  // A process that ends without a word leaves its socket, which nobody takes for a run.
+  one.signal(SIGKILL);
+  other.signal(SIGKILL);
+  one.wait();
+  other.wait();
+  EXPECT_NE(look("quit\n").output.find("no 'ipos run --realtime' of this user goes on"), std::string::npos);
+}
+
+TEST_F(AttachedRun, IsOfItsUserAlone) {
+  RunningIpos running = run();
+  ASSERT_TRUE(comes(1));
+  EXPECT_EQ(std::filesystem::status(place_.path() / "ipos").permissions(), std::filesystem::perms::owner_all);
+  EXPECT_EQ(std::filesystem::status(sockets()[0]).permissions(), std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+  if (geteuid() != 0 || std::system("command -v setpriv > /dev/null") != 0) GTEST_SKIP() << "another user cannot be tried here";
+  std::filesystem::permissions(place_.path(), std::filesystem::perms::all);
+  std::filesystem::permissions(folder_.path(), std::filesystem::perms::all);
+  const ScriptResult other =
+      shell(fmt::format("setpriv --reuid 54321 --clear-groups '{}' debug --attach < /dev/null", ipos_program()));
+  EXPECT_NE(other.output.find("no 'ipos run --realtime' of this user goes on"), std::string::npos) << other.output;
+  // Whoever opens the folder to others gets no place in it.
+  std::filesystem::permissions(place_.path() / "ipos", std::filesystem::perms::all);
+  EXPECT_NE(look("quit\n").output.find("no 'ipos run --realtime' of this user goes on"), std::string::npos);
+}
+
+TEST_F(AttachedRun, MayHaveNoPlace) {
+  RunningIpos running = run({"--no-attach"});
+  usleep(500'000);
+  EXPECT_TRUE(sockets().empty());
+}
+
+// What an editor sends in any session, and what it must not: the first answers come of the adapter, all others of the run.
+TEST_F(AttachedRun, IsShownToAnEditor) {
+  RunningIpos running = run();
+  ASSERT_TRUE(comes(1));
+  int seq = 0;
+  std::string session;
+  const auto send = [&](const std::string& command, const std::string& arguments = "{}") {
+    const std::string body = fmt::format(R"({{"type":"request","seq":{},"command":"{}","arguments":{}}})", ++seq, command, arguments);
+    session += fmt::format("Content-Length: {}\r\n\r\n{}", body.size(), body);
+  };
+  send("initialize", R"({"supportsInvalidatedEvent":true})");
+  send("attach");
+  send("setBreakpoints", R"({"source":{"path":"MAIN.IPC"},"breakpoints":[{"line":7}]})");
+  send("setExceptionBreakpoints", R"({"filters":["fault"]})");
+  send("configurationDone");
+  send("threads");
+  send("stackTrace", R"({"threadId":2})");
+  send("scopes", R"({"frameId":128})");
+  send("variables", R"({"variablesReference":1})");
+  send("evaluate", R"({"expression":"lCount * 0 + 11","frameId":128})");
+  const int good = seq;
+  send("next", R"({"threadId":2})");
+  send("stepBack", R"({"threadId":2})");
+  send("setVariable", R"({"variablesReference":1,"name":"lCount","value":"1"})");
+  send("evaluate", R"({"expression":"lCount = 1","context":"repl"})");
+  send("evaluate", R"({"expression":"who lCount","context":"repl"})");
+  send("goto", R"({"threadId":2,"targetId":1})");
+  send("restart");
+  send("launch", R"({"program":"MAIN.IPC"})");
+  const int bad = seq;
+  send("pause", R"({"threadId":2})");
+  folder_.write("begin", session);
+  session.clear();
+  send("continue", R"({"threadId":2})");
+  send("disconnect");
+  folder_.write("end", session);
+  const ScriptResult result = shell(fmt::format("(cat begin; sleep 2.5; cat end) | '{}' dap", ipos_program()));
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  const auto answer = [&](int n) {
+    const size_t end = result.output.find(fmt::format("\"request_seq\":{},", n));
+    if (end == std::string::npos) return std::string("none");
+    const size_t begin = result.output.rfind("Content-Length", end);
+    return result.output.substr(begin, result.output.find("Content-Length", end) - begin);
+  };
+  for (int n = 1; n <= seq; ++n)
+    EXPECT_NE(answer(n).find(n > good && n <= bad ? "\"success\":false" : "\"success\":true"), std::string::npos) << n << answer(n);
+  EXPECT_NE(answer(3).find("\"verified\":false"), std::string::npos) << answer(3);
+  EXPECT_NE(answer(9).find("\"lCount\""), std::string::npos) << answer(9);
+  EXPECT_NE(answer(10).find("\"result\":\"11\""), std::string::npos) << answer(10);
+  for (const char* text : {"\"event\":\"invalidated\"", "\"event\":\"capabilities\"", "\"reason\":\"pause\"", "looks at the run of MAIN.IPC"})
+    EXPECT_NE(result.output.find(text), std::string::npos) << text << "\n" << result.output;
+  size_t begun = 0;
+  for (size_t at = 0; (at = result.output.find("\"event\":\"initialized\"", at)) != std::string::npos; ++at) ++begun;
+  EXPECT_EQ(begun, 1U);
+  const ScriptResult nobody = shell(fmt::format("cat begin | XDG_RUNTIME_DIR=/nobody '{}' dap", ipos_program()));
+  EXPECT_NE(nobody.output.find("no 'ipos run --realtime' of this user goes on"), std::string::npos) << nobody.output;
+}
+
+// The run ends: its editor hears so.
+TEST_F(AttachedRun, ToldTheEditorThatItHasEnded) {
+  RunningIpos running = run({"--for", "1500ms"});
+  ASSERT_TRUE(comes(1));
+  std::string session;
+  for (const char* command : {"initialize", "attach"}) {
+    const std::string body = fmt::format(R"({{"type":"request","seq":{},"command":"{}","arguments":{{}}}})", session.empty() ? 1 : 2, command);
+    session += fmt::format("Content-Length: {}\r\n\r\n{}", body.size(), body);
+  }
+  folder_.write("begin", session);
+  const ScriptResult result = shell(fmt::format("(cat begin; sleep 4) | '{}' dap", ipos_program()));
+  EXPECT_NE(result.output.find("the run has ended"), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("\"event\":\"terminated\""), std::string::npos) << result.output;
 }
 
 TEST(DebugScript, EndsWithItsInput) { EXPECT_EQ(debug("s\ns\nrs\n").exit_code, 0); }

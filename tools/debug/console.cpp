@@ -7,11 +7,14 @@
 #include <charconv>
 #include <utility>
 
+#include "tools/cli/failure.hpp"
+
 namespace ipos::tools::debug {
 
 struct Console::Command {
   std::string_view name, alias, arguments, meaning;
   void (*run)(Console&, const std::string&);
+  bool looks = false;  // works at a run that is only looked at, too
 };
 
 const std::vector<Console::Command>& Console::commands() {
@@ -28,7 +31,9 @@ const std::vector<Console::Command>& Console::commands() {
       {"who", "", "VALUE", "who changed it last, where and when", [](C& c, const S& a) { c.who(a); }},
       {"catch", "", "FRAME", "stop behind the millisecond in which such a frame or telegram came: 40A#80*, sbus1 40A#*",
        [](C& c, const S& a) { c.catch_frame(a); }},
-      {"condition", "", "N [EXPR]", "change the condition of a breakpoint",
+      {"commands", "", "[N]", "words that are carried out at each stop of a breakpoint, line by line until 'end'",
+       [](C& c, const S& a) { c.commands_of(a); }},
+      {"condition", "", "N [EXPR]", "change the condition of a breakpoint; $ for N: the last one",
        [](C& c, const S& a) { c.condition(a); }},
       {"hits", "", "N [COUNT|>= N|% N]", "stop only at such hits", [](C& c, const S& a) { c.hits(a); }},
       {"delete", "d", "[N...]", "remove breakpoints, all or some", [](C& c, const S& a) { c.remove(a); }},
@@ -46,6 +51,8 @@ const std::vector<Console::Command>& Console::commands() {
       {"finish", "", "", "to the end of the function", [](C& c, const S& a) { c.go(Motion::Out, false, a); }},
       {"until", "u", "LINE|PLACE|TIME", "to a place, or a time such as 1.5s",
        [](C& c, const S& a) { c.until(a); }},
+      {"jump", "j", "LINE|PLACE", "set the next statement of the task, in its function; nothing in between is done",
+       [](C& c, const S& a) { c.jump_to(a); }},
       {"reverse-continue", "rc", "", "back to the last stop",
        [](C& c, const S& a) { c.go(Motion::Continue, true, a); }},
       {"reverse-step", "rs", "[N]", "back to the line before, into functions",
@@ -56,20 +63,22 @@ const std::vector<Console::Command>& Console::commands() {
        [](C& c, const S& a) { c.go(Motion::Instruction, true, a); }},
       {"reverse-finish", "", "", "back to the call of the function",
        [](C& c, const S& a) { c.go(Motion::Out, true, a); }},
-      {"backtrace", "bt", "", "the calls", [](C& c, const S&) { c.backtrace(); }},
-      {"list", "l", "[LINE]", "source lines", [](C& c, const S& a) { c.list(a); }},
-      {"print", "p", "[/x] EXPR", "a value, a structure, an array", [](C& c, const S& a) { c.print(a); }},
-      {"display", "", "[[/x] EXPR]", "print it at each stop; without an expression: now", [](C& c, const S& a) { c.display(a); }},
-      {"undisplay", "", "[N...]", "", [](C& c, const S& a) { c.undisplay(a); }},
+      {"backtrace", "bt", "", "the calls", [](C& c, const S&) { c.backtrace(); }, true},
+      {"list", "l", "[LINE]", "source lines", [](C& c, const S& a) { c.list(a); }, true},
+      {"print", "p", "[/x] EXPR", "a value, a structure, an array", [](C& c, const S& a) { c.print(a); }, true},
+      {"display", "", "[[/x] EXPR]", "print it at each stop; without an expression: now", [](C& c, const S& a) { c.display(a); }, true},
+      {"undisplay", "", "[N...]", "", [](C& c, const S& a) { c.undisplay(a); }, true},
       {"x", "", "[/N[i|x|d]] VARIABLE|ADDRESS", "variables in a row, or commands",
-       [](C& c, const S& a) { c.examine(a); }},
+       [](C& c, const S& a) { c.examine(a); }, true},
       {"set", "", "VALUE = EXPR", "write a variable, parameter or input", [](C& c, const S& a) { c.set(a); }},
       {"disassemble", "disas", "[FUNCTION|ADDRESS]", "the commands around",
-       [](C& c, const S& a) { c.disassemble(a); }},
-      {"info", "i", "tasks|sbus|breakpoints|io|cost|snapshots", "", [](C& c, const S& a) { c.info(a); }},
-      {"task", "", "[UNIT] N", "look at another task", [](C& c, const S& a) { c.select_task(a); }},
-      {"help", "h", "", "", [](C& c, const S&) { c.help(); }},
-      {"quit", "q", "", "", [](C& c, const S&) { c.over_ = true; }},
+       [](C& c, const S& a) { c.disassemble(a); }, true},
+      {"info", "i", "tasks|sbus|breakpoints|io|cost|snapshots", "", [](C& c, const S& a) { c.info(a); }, true},
+      {"save", "", "FILE", "write the breakpoints, their words and the displays as words", [](C& c, const S& a) { c.save_points(a); }},
+      {"source", "", "FILE", "carry out the words of a file", [](C& c, const S& a) { c.source(a); }},
+      {"task", "", "[UNIT] N", "look at another task", [](C& c, const S& a) { c.select_task(a); }, true},
+      {"help", "h", "", "", [](C& c, const S&) { c.help(); }, true},
+      {"quit", "q", "", "", [](C& c, const S&) { c.over_ = true; }, true},
   };
   return kCommands;
 }
@@ -91,17 +100,40 @@ void Console::attach(Debugger& debugger) {
   debugger_ = &debugger;
   const std::vector<TaskRef> tasks = debugger.tasks();
   if (!tasks.empty()) current_ = tasks.front();
-  spent_[1] = spent();
+  cost_.begin(debugger);
+}
+
+void Console::begin_to_look(const std::string& file) {
+  print_(fmt::format("looks at the run of {}, which goes on; help lists the words\n", file));
+  show_place();
 }
 
 bool Console::execute(const std::string& line) {
   const size_t begin = line.find_first_not_of(" \t\r");
-  if (begin != std::string::npos && line[begin] == '#') return true;
-  const std::string text = begin == std::string::npos
-                               ? last_line_
-                               : line.substr(begin, line.find_last_not_of(" \t\r") + 1 - begin);
-  last_line_ = text;
-  if (text.empty()) return true;
+  std::string text = begin == std::string::npos ? std::string() : line.substr(begin, line.find_last_not_of(" \t\r") + 1 - begin);
+  if (collecting_ == 0 && !text.starts_with('#')) {
+    if (text.empty()) text = last_line_;
+    last_line_ = text;
+  }
+  carry_out(text);
+  // Another process may have gone on meanwhile: only members are used.
+  for (bool more = true; more && !over_;) {
+    std::deque<std::string>& lines = at_stop_.empty() ? sourced_ : at_stop_;
+    more = !lines.empty();
+    if (!more) break;
+    const std::string next = std::move(lines.front());
+    lines.pop_front();
+    carry_out(next);
+    if (not_interrupted()) continue;
+    at_stop_.clear();
+    sourced_.clear();
+  }
+  return !over_;
+}
+
+void Console::carry_out(const std::string& text) {
+  if (collecting_ != 0) return collect(text);
+  if (text.empty() || text.starts_with('#')) return;
   const size_t end = std::min(text.find_first_of(" \t/"), text.size());
   const std::string word = text.substr(0, end);
   std::string arguments = text.substr(end);
@@ -109,11 +141,14 @@ bool Console::execute(const std::string& line) {
   try {
     const Command* command = find(word);
     if (command == nullptr) throw ValueError(fmt::format("'{}' is no command; see help", word));
+    if (debugger_->only_looks() && !command->looks)
+      throw ValueError(fmt::format("the run is only looked at: '{}' would run, stop or change it", command->name));
     command->run(*this, arguments);
   } catch (const ValueError& error) {
     print_(fmt::format("{}\n", error.what()));
+  } catch (const Failure& failure) {  // of files
+    print_(fmt::format("{}\n", failure.what()));
   }
-  return !over_;
 }
 
 void Console::go(Motion motion, bool backward, const std::string& count) {
@@ -140,9 +175,9 @@ void Console::run(const Order& order) {
 // nothing of locals: only members are used.
 void Console::carry_on(Stop stop) {
   for (;;) {
-    if (!asks_.is_null()) {
-      if (answer_who(stop)) return;
-      stop = debugger_->return_to(asks_["from"].get<Position>());
+    if (who_.asks()) {
+      if (const auto answer = who_.answer(*debugger_, stop)) return print_(*answer + "\n");
+      stop = debugger_->return_to(who_.from());
     } else if (more_ > 0 && stop.reason == Reason::Step) {
       --more_;
       frames_.listen(true);
@@ -164,7 +199,8 @@ void Console::show_journal() {
 }
 
 void Console::show_stop(const Stop& stop) {
-  spent_[0] = std::exchange(spent_[1], spent());
+  cost_.stopped(*debugger_);
+  note_commands(stop);
   show_journal();
   if (stop.task.task != 0 && stop.task != current_) {
     current_ = stop.task;
@@ -198,8 +234,8 @@ TaskRef Console::task_with_frames() const {
 
 void Console::show_place() {
   const Position& at = debugger_->position();
-  const std::string when =
-      fmt::format("{:.3f} ms, {} commands", static_cast<double>(at.time) / 1e6, at.commands);
+  std::string when = fmt::format("{:.3f} ms", static_cast<double>(at.time) / 1e6);
+  if (!debugger_->only_looks()) when += fmt::format(", {} commands", at.commands);
   if (current_.task == 0) return print_(fmt::format("at {}\n", when));
   const std::vector<Frame> frames = debugger_->frames(current_);
   if (frames.empty())
@@ -241,7 +277,7 @@ std::vector<std::string> Console::complete(std::string_view line) const {
 Json Console::save() {
   return {{"task", current_},          {"last", last_line_},     {"told", told_},           {"input", save_input()},
           {"frames", frames_.save()}, {"displays", displays_}, {"display", last_display_},
-          {"asks", asks_},             {"spent", spent_}};
+          {"who", who_.save()},        {"cost", cost_.save()}, {"commands", commands_}, {"sourced", sourced_}};
 }
 
 void Console::load(const Json& state) {
@@ -252,15 +288,19 @@ void Console::load(const Json& state) {
   frames_.load(state["frames"]);
   displays_ = state["displays"].get<std::vector<std::pair<int, std::string>>>();
   last_display_ = state["display"];
-  asks_ = state["asks"];
-  spent_[0] = state["spent"][0].get<Spent>();
-  spent_[1] = state["spent"][1].get<Spent>();
+  who_.load(state["who"]);
+  cost_.load(state["cost"]);
+  commands_ = state["commands"].get<std::map<int, std::vector<std::string>>>();
+  collecting_ = 0;
+  at_stop_.clear();
+  sourced_ = state["sourced"].get<std::deque<std::string>>();
   load_input(state["input"]);
 }
 
 void Console::help() {
   for (const Command& command : commands())
-    print_(fmt::format("{:<24}{:<44} {}\n",
+    if (command.looks || !debugger_->only_looks())
+      print_(fmt::format("{:<24}{:<44} {}\n",
                        fmt::format("{}{}{}", command.name, command.alias.empty() ? "" : ", ", command.alias),
                        command.arguments, command.meaning));
 }

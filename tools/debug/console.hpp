@@ -2,6 +2,7 @@
 // `print`; reading lines is the caller's.
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <map>
 #include <string>
@@ -10,7 +11,9 @@
 #include <vector>
 
 #include "tools/debug/frame_points.hpp"
+#include "tools/debugger/cost.hpp"
 #include "tools/debugger/debugger.hpp"
+#include "tools/debugger/last_writer.hpp"
 
 namespace ipos::tools::debug {
 
@@ -20,6 +23,9 @@ class Console final : public FrontEnd {
   explicit Console(Print print) : print_(std::move(print)) {}
   // Before anything else; a debugger needs its front end, too.
   void attach(Debugger& debugger);
+
+  // The same, of a debugger that only looks at a run of that file: what its user is told first.
+  void begin_to_look(const std::string& file);
 
   // What another process must know of the input; and whether to go on.
   std::function<Json()> save_input = [] { return Json(); };
@@ -42,6 +48,7 @@ class Console final : public FrontEnd {
   static const std::vector<Command>& commands();
   static const Command* find(std::string_view word);
 
+  void carry_out(const std::string& text);
   void go(Motion motion, bool backward, const std::string& count);
   void run(const Order& order);
   void carry_on(Stop stop);
@@ -54,19 +61,28 @@ class Console final : public FrontEnd {
   void watch(const std::string& arguments);
   void catch_frame(const std::string& arguments);
   void who(const std::string& arguments);
-  bool answer_who(const Stop& stop);
-  std::string change_text(const Stop& stop) const;
   void display(const std::string& arguments);
   void undisplay(const std::string& arguments);
   void show_displays();
+  int last_point() const;
+  int point_number(std::string_view word) const;  // "$": the last one; throws ValueError
+  void commands_of(const std::string& arguments);
+  void collect(const std::string& line);
+  void note_commands(const Stop& stop);
+  void save_points(const std::string& arguments);
+  void source(const std::string& arguments);
+  std::string place_words(uint32_t station, uint32_t address) const;
+  std::string value_words(const ValuePlace& place) const;
   void condition(const std::string& arguments);
   void hits(const std::string& arguments);
   void remove(const std::string& arguments);
   void enable(const std::string& arguments, bool on);
   void until(const std::string& arguments);
+  void jump_to(const std::string& arguments);
   void backtrace();
   void list(const std::string& arguments);
   void print(const std::string& arguments);
+  void print_whole(const Whole& whole, const std::string& text, bool hex);
   void examine(const std::string& arguments);
   void set(const std::string& arguments);
   void disassemble(const std::string& arguments);
@@ -76,7 +92,6 @@ class Console final : public FrontEnd {
   void info_breakpoints();
   void info_io();
   void info_snapshots();
-  void info_cost();
   void select_task(const std::string& arguments);
   void help();
 
@@ -89,14 +104,6 @@ class Console final : public FrontEnd {
   std::string source_line(const std::string& file, uint32_t line);
   uint32_t station_named(std::string_view name) const;  // throws ValueError
   TaskRef task_with_frames() const;
-
-  // Commands that each task has executed at a stop.
-  struct Spent {
-    runtime::Time time = 0;
-    std::vector<std::pair<TaskRef, uint64_t>> tasks;
-    NLOHMANN_DEFINE_TYPE_INTRUSIVE(Spent, time, tasks)
-  };
-  Spent spent() const;
 
   Debugger* debugger_ = nullptr;
   Print print_;
@@ -111,8 +118,11 @@ class Console final : public FrontEnd {
   FramePoints frames_;
   std::vector<std::pair<int, std::string>> displays_;  // number; arguments of print
   int last_display_ = 0;
-  Spent spent_[2];       // at the stop before, and at this one
-  Json asks_ = nullptr;  // `who` is looking back: what it found, and what it will put back
+  Cost cost_;
+  LastWriter who_;
+  std::map<int, std::vector<std::string>> commands_;  // of the points; what is done at their stops
+  int collecting_ = 0;                                // the point whose words are being told
+  std::deque<std::string> at_stop_, sourced_;         // still to do: of the last stop, and of a file
 };
 
 }  // namespace ipos::tools::debug

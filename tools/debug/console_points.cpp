@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "tools/debug/console.hpp"
+#include "tools/debug/jump.hpp"
 
 namespace ipos::tools::debug {
 namespace {
@@ -105,83 +106,71 @@ void Console::watch(const std::string& arguments) {
 }
 
 void Console::catch_frame(const std::string& arguments) {
-  if (!FramePoints::is_frame(debugger_->plant(), arguments))
-    throw ValueError(fmt::format("'{}' is no frame such as 40A#80*, sbus1 40A#* or 02 01 *", arguments));
-  frames_.add(debugger_->next_id(), arguments);
-  print_(fmt::format("Breakpoint {}: frame {}\n", frames_.all().back().first, arguments));
+  const auto [pattern, condition] = split_condition(arguments);
+  if (!FramePoints::is_frame(debugger_->plant(), pattern))
+    throw ValueError(fmt::format("'{}' is no frame such as 40A#80*, sbus1 40A#* or 02 01 *", pattern));
+  if (!condition.empty()) evaluate(debugger_->plant(), 0, condition);
+  frames_.add({debugger_->next_id(), pattern, condition});
+  print_(fmt::format("Breakpoint {}: frame {}\n", frames_.all().back().id, pattern));
 }
 
-// Goes back to the last change as `rc` does with a watchpoint, and returns (answer_who).
 void Console::who(const std::string& arguments) {
   const ValuePlace place = evaluate_place(debugger_->plant(), current_.station, arguments);
-  asks_ = {{"name", place.name},
-           {"value", value_text(place)},
-           {"from", debugger_->position()},
-           {"breakpoints", debugger_->breakpoints()},
-           {"watchpoints", debugger_->watchpoints()}};
-  debugger_->breakpoints().clear();
-  debugger_->watchpoints() = {{0, place.station, place, "", true, 0}};
   more_ = 0;
-  run(debugger_->order_for(Motion::Continue, current_, true));
+  run(who_.ask(*debugger_, current_, place));
 }
 
-// Behind the way back, and behind the way forth. True: it was the latter.
-bool Console::answer_who(const Stop& stop) {
-  if (!asks_.contains("found")) {
-    asks_["found"] = stop.reason == Reason::Data ? change_text(stop)
-                                                 : fmt::format("nobody has changed {} = {} so far\n", asks_["name"].get<std::string>(),
-                                                               asks_["value"].get<std::string>());
-    return false;
-  }
-  debugger_->breakpoints() = asks_["breakpoints"].get<std::vector<Breakpoint>>();
-  debugger_->watchpoints() = asks_["watchpoints"].get<std::vector<Watchpoint>>();
-  print_(asks_["found"].get<std::string>());
-  asks_ = nullptr;
-  return true;
+int Console::last_point() const {
+  int last = 0;
+  for (const Breakpoint& point : debugger_->breakpoints()) last = std::max(last, point.id);
+  for (const Watchpoint& point : debugger_->watchpoints()) last = std::max(last, point.id);
+  for (const FramePoint& point : frames_.all()) last = std::max(last, point.id);
+  return last;
 }
 
-// At the stop in front of it.
-std::string Console::change_text(const Stop& stop) const {
-  const Position& at = debugger_->position();
-  std::string by = "no command: a telegram, the unit, a stimulus or 'set'";
-  if (stop.task.task != 0) {
-    by = debugger_->task_name(stop.task);
-    const std::vector<Frame> frames = debugger_->frames(stop.task);
-    if (!frames.empty())
-      by += fmt::format(", {} at {}", frames.front().function,
-                        frames.front().place.line == 0 ? fmt::format("word {}", frames.front().address) : frames.front().place.text());
-  }
-  return fmt::format("{} by {} ({:.3f} ms, {} commands)\n", stop.text, by, static_cast<double>(at.time) / 1e6, at.commands);
+int Console::point_number(std::string_view word) const {
+  const int last = last_point();
+  const auto number = word == "$" ? std::optional(static_cast<uint32_t>(last)) : number_of(word);
+  const auto same = [&number](const auto& point) { return number && point.id == static_cast<int>(*number); };
+  const auto has = [&same](const auto& points) { return std::any_of(points.begin(), points.end(), same); };
+  if (!has(debugger_->breakpoints()) && !has(debugger_->watchpoints()) && !has(frames_.all()))
+    throw ValueError(fmt::format("there is no breakpoint {}", word));
+  return static_cast<int>(*number);
 }
+
+namespace {
+
+// "N TEXT" in two.
+std::pair<std::string, std::string> split_number(const std::string& arguments) {
+  std::istringstream in(arguments);
+  std::string word, text;
+  in >> word >> std::ws;
+  std::getline(in, text);
+  return {word, text};
+}
+
+template <class Points>
+auto* point_of(Points& points, int id) {
+  const auto found = std::find_if(points.begin(), points.end(), [id](const auto& point) { return point.id == id; });
+  return found == points.end() ? nullptr : &*found;
+}
+
+}  // namespace
 
 void Console::condition(const std::string& arguments) {
-  std::istringstream in(arguments);
-  int id = 0;
-  in >> id >> std::ws;
-  std::string text;
-  std::getline(in, text);
-  const auto change = [&](auto& points) {
-    for (auto& point : points)
-      if (point.id == id) return point.condition = text, true;
-    return false;
-  };
-  if (!change(debugger_->breakpoints()) && !change(debugger_->watchpoints()))
-    throw ValueError(fmt::format("there is no breakpoint {}", id));
+  const auto [word, text] = split_number(arguments);
+  const int id = point_number(word);
+  if (Breakpoint* point = point_of(debugger_->breakpoints(), id)) point->condition = text;
+  if (Watchpoint* point = point_of(debugger_->watchpoints(), id)) point->condition = text;
+  if (FramePoint* point = point_of(frames_.all(), id)) point->condition = text;
 }
 
 void Console::hits(const std::string& arguments) {
-  std::istringstream in(arguments);
-  int id = 0;
-  in >> id >> std::ws;
-  std::string text;
-  std::getline(in, text);
-  const auto change = [&](auto& points) {
-    for (auto& point : points)
-      if (point.id == id) return point.hit_condition = text, true;
-    return false;
-  };
-  if (!change(debugger_->breakpoints()) && !change(debugger_->watchpoints()))
-    throw ValueError(fmt::format("there is no breakpoint {}", id));
+  const auto [word, text] = split_number(arguments);
+  const int id = point_number(word);
+  if (Breakpoint* point = point_of(debugger_->breakpoints(), id)) point->hit_condition = text;
+  if (Watchpoint* point = point_of(debugger_->watchpoints(), id)) point->hit_condition = text;
+  if (FramePoint* point = point_of(frames_.all(), id)) point->hit_condition = text;
 }
 
 void Console::remove(const std::string& arguments) {
@@ -189,6 +178,7 @@ void Console::remove(const std::string& arguments) {
     debugger_->breakpoints().clear();
     debugger_->watchpoints().clear();
     frames_.clear();
+    commands_.clear();
     return;
   }
   std::istringstream in(arguments);
@@ -196,28 +186,21 @@ void Console::remove(const std::string& arguments) {
     const auto same = [id](const auto& point) { return point.id == id; };
     if (std::erase_if(debugger_->breakpoints(), same) + std::erase_if(debugger_->watchpoints(), same) == 0 && !frames_.remove(id))
       throw ValueError(fmt::format("there is no breakpoint {}", id));
+    commands_.erase(id);
   }
 }
 
 void Console::enable(const std::string& arguments, bool on) {
   std::istringstream in(arguments);
   std::vector<int> ids;
-  for (std::string word; in >> word;) {
-    const auto id = number_of(word);
-    const auto same = [&id](const auto& point) { return id && point.id == static_cast<int>(*id); };
-    const auto& breakpoints = debugger_->breakpoints();
-    const auto& watchpoints = debugger_->watchpoints();
-    if (std::none_of(breakpoints.begin(), breakpoints.end(), same) &&
-        std::none_of(watchpoints.begin(), watchpoints.end(), same))
-      throw ValueError(fmt::format("there is no breakpoint {}", word));
-    ids.push_back(static_cast<int>(*id));
-  }
+  for (std::string word; in >> word;) ids.push_back(point_number(word));
   const auto change = [&](auto& points) {
     for (auto& point : points)
       if (ids.empty() || std::find(ids.begin(), ids.end(), point.id) != ids.end()) point.enabled = on;
   };
   change(debugger_->breakpoints());
   change(debugger_->watchpoints());
+  change(frames_.all());
 }
 
 // A time is one that ends in a unit; all else is a place.
@@ -237,19 +220,33 @@ void Console::until(const std::string& arguments) {
   run(order);
 }
 
+// A line is a statement of the function in which the task stands, also where the function is there several times.
+void Console::jump_to(const std::string& arguments) {
+  Location at = locate(arguments);
+  if (at.station != current_.station) throw ValueError("that is in another station: see task");
+  const CodeMap& code = *debugger_->code(at.station);
+  const std::vector<Frame> frames = debugger_->frames(task_with_frames());
+  const SourcePlace place = code.place(at.address);
+  if (place.line != 0 && !frames.empty() && !arguments.starts_with('*'))
+    for (const uint32_t address : statements_at(*debugger_, at.station, place.file, place.line))
+      if (code.function(address) == code.function(frames.front().address)) at.address = address;
+  jump(*debugger_, current_, at.address);
+  listed_ = 0;
+  show_place();
+}
+
 void Console::info_breakpoints() {
+  const auto line = [this](const auto& point, const std::string& what, const std::string& log) {
+    print_(fmt::format("{:<3} {}{}{}{}, {} hits{}\n", point.id, what, point.condition.empty() ? "" : " if " + point.condition,
+                       point.hit_condition.empty() ? "" : " at hits " + point.hit_condition, log, point.hits,
+                       point.enabled ? "" : ", disabled"));
+    if (const auto found = commands_.find(point.id); found != commands_.end())
+      for (const std::string& text : found->second) print_(fmt::format("      {}\n", text));
+  };
   for (const Breakpoint& point : debugger_->breakpoints())
-    print_(fmt::format("{:<3} {}{}{}{}, {} hits{}\n", point.id, describe(point.station, point.address),
-                       point.condition.empty() ? "" : " if " + point.condition,
-                       point.hit_condition.empty() ? "" : " at hits " + point.hit_condition,
-                       point.log.empty() ? "" : " prints " + point.log, point.hits,
-                       point.enabled ? "" : ", disabled"));
-  for (const Watchpoint& point : debugger_->watchpoints())
-    print_(fmt::format("{:<3} watch {}{}{}, {} hits{}\n", point.id, point.place.name,
-                       point.condition.empty() ? "" : " if " + point.condition,
-                       point.hit_condition.empty() ? "" : " at hits " + point.hit_condition, point.hits,
-                       point.enabled ? "" : ", disabled"));
-  for (const auto& [id, pattern] : frames_.all()) print_(fmt::format("{:<3} frame {}\n", id, pattern));
+    line(point, describe(point.station, point.address), point.log.empty() ? "" : " prints " + point.log);
+  for (const Watchpoint& point : debugger_->watchpoints()) line(point, "watch " + point.place.name, "");
+  for (const FramePoint& point : frames_.all()) line(point, "frame " + point.pattern, "");
 }
 
 }  // namespace ipos::tools::debug

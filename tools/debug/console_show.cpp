@@ -57,23 +57,25 @@ void Console::print(const std::string& arguments) {
   std::string text = arguments.substr(arguments.starts_with('/') ? std::min<size_t>(2, arguments.size()) : 0);
   text.erase(0, text.find_first_not_of(' '));
   const runtime::Plant& plant = debugger_->plant();
-  // A structure is shown member by member, an array element by element.
-  bool shown = false;
-  for (const vm::Symbol& symbol : plant.stations()[current_.station]->symbols()) {
-    const bool member = symbol.name.starts_with(text + ".");
-    if (!member && !(symbol.name == text && symbol.count > 1)) continue;
-    shown = true;
-    std::string values;
-    for (uint32_t n = 0; n < symbol.count; ++n)
-      values += (n == 0 ? "" : ", ") +
-                number_text(plant.stations()[current_.station]->variable(symbol.variable + n), hex);
-    print_(fmt::format("{} = {}\n", symbol.name, symbol.count == 1 ? values : "{" + values + "}"));
-  }
-  if (shown) return;
+  if (const auto whole = find_whole(plant, current_.station, text)) return print_whole(*whole, text, hex);
   if (!hex)
     if (const auto place = find_value(plant, current_.station, text))
       return print_(fmt::format("{} = {}\n", text, value_text(*place)));
   print_(fmt::format("{} = {}\n", text, number_text(evaluate(plant, current_.station, text), hex)));
+}
+
+// A structure is shown member by member, an array element by element; the station stands in front where it was named.
+void Console::print_whole(const Whole& whole, const std::string& text, bool hex) {
+  const runtime::Station& station = *debugger_->plant().stations()[whole.station];
+  const std::string prefix = text.substr(0, text.size() - whole.name.size());
+  for (size_t n = 0; n < whole.variables.size();) {
+    const std::string& symbol = whole.variables[n].symbol;
+    const size_t first = n;
+    std::string values;
+    for (; n < whole.variables.size() && whole.variables[n].symbol == symbol; ++n)
+      values += (n == first ? "" : ", ") + number_text(station.variable(whole.variables[n].number), hex);
+    print_(fmt::format("{}{} = {}\n", prefix, symbol, n == first + 1 ? values : "{" + values + "}"));
+  }
 }
 
 // What cannot be shown where the plant stands, say a name of another station, is told and stays.
@@ -124,10 +126,18 @@ void Console::examine(const std::string& arguments) {
           fmt::format("{:>6}  {}\n", code->items()[item].address, code->text(code->items()[item].address)));
     return;
   }
-  const ValuePlace place = evaluate_place(debugger_->plant(), current_.station, what, true);
-  if (!place.signal->is_variable()) throw ValueError("x shows variables; see print");
-  const auto& station = *debugger_->plant().stations()[place.station];
-  for (uint32_t number = place.signal->number; count != 0 && number < station.config().unit->variables; --count, ++number)
+  uint32_t in = current_.station, number = 0;
+  if (const auto whole = find_whole(debugger_->plant(), current_.station, what)) {
+    in = whole->station;
+    number = whole->variables.front().number;
+  } else {
+    const ValuePlace place = evaluate_place(debugger_->plant(), current_.station, what, true);
+    if (!place.signal->is_variable()) throw ValueError("x shows variables; see print");
+    in = place.station;
+    number = place.signal->number;
+  }
+  const auto& station = *debugger_->plant().stations()[in];
+  for (; count != 0 && number < station.config().unit->variables; --count, ++number)
     print_(fmt::format("H{:<5} {}\n", number, number_text(station.variable(number), form == 'x')));
 }
 
@@ -169,33 +179,9 @@ void Console::info(const std::string& arguments) {
   if (is("sbus") && arguments != "s") return info_sbus();
   if (is("snapshots") && arguments != "s") return info_snapshots();
   if (is("io")) return info_io();
-  if (is("cost")) return info_cost();
+  if (is("cost") && debugger_->only_looks()) throw ValueError("a cost is that from one stop to the next, and the run is only looked at");
+  if (is("cost")) return print_(cost_.text(*debugger_));
   throw ValueError("info knows tasks, breakpoints, sbus, io, cost and snapshots");
-}
-
-// A start of the task begins to count anew, and so does a way back.
-void Console::info_cost() {
-  const Spent &before = spent_[0], &now = spent_[1];
-  if (before.tasks.empty()) return print_("nothing has run since the session began\n");
-  print_(fmt::format("{:.3f} ms since the stop before\n", static_cast<double>(now.time - before.time) / 1e6));
-  for (const auto& [task, commands] : now.tasks) {
-    const auto from = std::find_if(before.tasks.begin(), before.tasks.end(), [&](const auto& one) { return one.first == task; });
-    const uint64_t until_then = from == before.tasks.end() || from->second > commands ? 0 : from->second;
-    if (commands != until_then) print_(fmt::format("  {}: {} commands\n", debugger_->task_name(task), commands - until_then));
-  }
-}
-
-// Of a task with its interrupt routines.
-Console::Spent Console::spent() const {
-  Spent all{debugger_->position().time, {}};
-  for (const TaskRef task : debugger_->tasks(true)) {
-    const vm::Machine& machine = *debugger_->machine(task.station);
-    uint64_t commands = 0;
-    for (int context = 1; context <= vm::kContexts; ++context)
-      if (machine.context(context).task == task.task) commands += machine.context(context).commands;
-    all.tasks.emplace_back(task, commands);
-  }
-  return all;
 }
 
 void Console::info_tasks() {

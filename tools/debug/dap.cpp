@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "compiler/diag/places.hpp"
 #include "runtime/signals/find.hpp"
@@ -41,34 +42,39 @@ bool gives_order(const Json& message) {
 struct DapServer::Request {
   std::string_view command;
   Handler handle;
+  bool looks = false;  // works at a run that is only looked at, too
 };
 
 const std::vector<DapServer::Request>& DapServer::requests() {
   using S = DapServer;
   static const std::vector<Request> kRequests = {
-      {"initialize", &S::initialize},
+      {"initialize", &S::initialize, true},
       {"launch", &S::launch},
-      {"configurationDone", &S::configured},
+      {"attach", &S::attach, true},
+      {"configurationDone", &S::configured, true},
       {"setBreakpoints", &S::set_breakpoints},
       {"setInstructionBreakpoints", &S::set_instruction_breakpoints},
       {"dataBreakpointInfo", &S::data_breakpoint_info},
       {"setDataBreakpoints", &S::set_data_breakpoints},
       {"setExceptionBreakpoints", &S::set_exception_breakpoints},
       {"setFunctionBreakpoints", &S::set_function_breakpoints},
-      {"threads", &S::threads},
-      {"stackTrace", &S::stack_trace},
-      {"source", &S::source},
-      {"scopes", &S::scopes},
-      {"variables", &S::variables},
+      {"threads", &S::threads, true},
+      {"stackTrace", &S::stack_trace, true},
+      {"source", &S::source, true},
+      {"scopes", &S::scopes, true},
+      {"variables", &S::variables, true},
       {"setVariable", &S::set_variable},
       {"setExpression", &S::set_expression},
-      {"evaluate", &S::evaluate_text},
-      {"completions", &S::completions},
+      {"evaluate", &S::evaluate_text, true},
+      {"completions", &S::completions, true},
       {"restart", &S::restart},
-      {"disassemble", &S::disassemble},
-      {"breakpointLocations", &S::breakpoint_locations},
+      {"disassemble", &S::disassemble, true},
+      {"breakpointLocations", &S::breakpoint_locations, true},
       {"exceptionInfo", &S::exception_info},
-      {"readMemory", &S::read_memory},
+      {"readMemory", &S::read_memory, true},
+      {"gotoTargets", &S::goto_targets},
+      {"goto", &S::go_to},
+      {"loadedSources", &S::loaded_sources, true},
       {"continue", &S::resume},
       {"next", &S::next},
       {"stepIn", &S::step_in},
@@ -76,8 +82,8 @@ const std::vector<DapServer::Request>& DapServer::requests() {
       {"stepBack", &S::step_back},
       {"reverseContinue", &S::reverse_continue},
       {"pause", &S::pause},
-      {"disconnect", &S::disconnect},
-      {"terminate", &S::terminate},
+      {"disconnect", &S::disconnect, true},
+      {"terminate", &S::terminate, true},
   };
   return kRequests;
 }
@@ -115,7 +121,9 @@ void DapServer::answer(const Json& message) {
     if (found == nullptr) throw ValueError(fmt::format("'{}' is not known", compiler::printable(command)));
     const auto arguments = message.find("arguments");
     const bool some = arguments != message.end() && arguments->is_object();
-    answer["body"] = (this->*found->handle)(some ? *arguments : Json::object());
+    const Json given = some ? *arguments : Json::object();
+    if (only_looks()) debugger_->look();
+    answer["body"] = only_looks() && !found->looks ? look_instead(command, given) : (this->*found->handle)(given);
   } catch (const ValueError& error) {
     refuse(error.what());
   } catch (const Failure& failure) {
@@ -125,11 +133,22 @@ void DapServer::answer(const Json& message) {
   } catch (const std::exception&) {
     refuse(fmt::format("'{}' failed", command));
   }
+  if (command == "initialize") initialize_ = message;
+  if (attached_) {  // the run answers
+    queue_.push_front(message);
+    return queue_.push_front(initialize_);
+  }
+  if (who_.asks() && later_.is_null()) {
+    later_ = std::move(answer);
+    return go();
+  }
   answer["seq"] = ++seq_;
   const bool good = answer["success"].get<bool>();
   send_(answer);
   if (command == "initialize" && good) event("initialized", Json::object());
   if (command == "terminate" && good) event("terminated", Json::object());
+  if (only_looks() && good) tell_looks(command);
+  if (const auto task = std::exchange(later_stop_, std::nullopt)) tell_stop("goto", "", {}, *task);
   if (order_) go();
 }
 
@@ -147,7 +166,22 @@ void DapServer::go() {
   order_.reset();
   began_ = std::chrono::steady_clock::now();
   frames_.listen(!order.backward);
-  report(debugger_->run(order));
+  carry_on(debugger_->run(order));
+}
+
+// Who has changed a value is looked for without a stop: behind the way back and the way forth stands the answer.
+void DapServer::carry_on(Stop stop) {
+  while (who_.asks()) {
+    if (const auto answer = who_.answer(*debugger_, stop)) {
+      Json response = std::exchange(later_, nullptr);
+      response["seq"] = ++seq_;
+      response["body"] = {{"result", *answer}, {"variablesReference", 0}};
+      return send_(response);
+    }
+    stop = debugger_->return_to(who_.from());
+  }
+  cost_.stopped(*debugger_);
+  report(stop);
 }
 
 void DapServer::tell_journal() {
@@ -161,7 +195,6 @@ void DapServer::tell_journal() {
 }
 
 void DapServer::report(const Stop& stop) {
-  references_.clear();
   tell_journal();
   static constexpr const char* kReasons[] = {"entry",     "breakpoint", "data breakpoint", "step",  "pause",
                                              "exception", "step",       "pause",           "pause", "step"};
@@ -177,14 +210,20 @@ void DapServer::report(const Stop& stop) {
     ids.push_back(frames_.id());
   }
   fault_ = reason == "exception" ? text : "";
+  tell_stop(reason, text, ids, stop.task);
+}
+
+void DapServer::tell_stop(const std::string& reason, const std::string& text, const std::vector<int>& ids, TaskRef task) {
+  references_.clear();
+  targets_.clear();
   // Virtual time, which no editor has a place for.
   const std::string time = fmt::format("{:.3f} ms", static_cast<double>(debugger_->plant().now()) / 1e6);
   Json body{{"reason", reason},
             {"allThreadsStopped", true},
             {"text", text},
-            {"description", fmt::format("{} at {}", text.empty() ? reason : text, time)},
+            {"description", fmt::format("{} at {}{}", text.empty() ? reason : text, time,
+                                        cost_.commands() == 0 ? "" : fmt::format(", {} commands later", cost_.commands()))},
             {"hitBreakpointIds", ids}};
-  TaskRef task = stop.task;
   const std::vector<TaskRef> tasks = debugger_->tasks();
   if (task.task == 0 && !tasks.empty()) task = tasks.front();
   if (task.task != 0) body["threadId"] = static_cast<int>(task.station) * kTaskNumbers + task.task + 1;
@@ -224,7 +263,9 @@ Json DapServer::save() {
   for (const auto& [id, source] : sources_) sources.push_back({id, source.first, source.second});
   return {{"seq", seq_},        {"told", told_},         {"queue", queue_}, {"faults", fault_points_},
           {"sources", sources}, {"input", save_input()}, {"frames", frames_.save()},
-          {"functions", function_points_}, {"closed", closed_}};
+          {"functions", function_points_}, {"closed", closed_}, {"fault", fault_},
+          {"cost", cost_.save()}, {"who", who_.save()}, {"later", later_},
+          {"references", references_}, {"targets", targets_}};
 }
 
 void DapServer::load(const Json& state) {
@@ -236,6 +277,12 @@ void DapServer::load(const Json& state) {
   function_points_ = state["functions"].get<std::vector<int>>();
   fault_points_ = state["faults"].get<std::vector<int>>();
   frames_.load(state["frames"]);
+  fault_ = state["fault"].get<std::string>();
+  cost_.load(state["cost"]);
+  who_.load(state["who"]);
+  later_ = state["later"];
+  references_ = state["references"].get<std::vector<Reference>>();
+  targets_ = state["targets"].get<std::map<int64_t, std::pair<uint32_t, uint32_t>>>();
   order_.reset();
   sources_.clear();
   for (const Json& source : state["sources"])
@@ -261,6 +308,7 @@ Json DapServer::initialize(const Json& arguments) {
   lines_from_1_ = arguments.value("linesStartAt1", true);
   columns_from_1_ = arguments.value("columnsStartAt1", true);
   uris_ = arguments.value("pathFormat", "path") == "uri";
+  refreshes_ = arguments.value("supportsInvalidatedEvent", false);
   Json can = Json::object();
   for (const char* word :
        {"supportsConfigurationDoneRequest", "supportsFunctionBreakpoints", "supportsConditionalBreakpoints",
@@ -269,7 +317,7 @@ Json DapServer::initialize(const Json& arguments) {
         "supportsDisassembleRequest", "supportsInstructionBreakpoints", "supportsSteppingGranularity",
         "supportsTerminateRequest", "supportsRestartRequest", "supportsCompletionsRequest",
         "supportsValueFormattingOptions", "supportsBreakpointLocationsRequest", "supportsExceptionInfoRequest",
-        "supportsReadMemoryRequest"})
+        "supportsReadMemoryRequest", "supportsGotoTargetsRequest", "supportsLoadedSourcesRequest"})
     can[word] = true;
   can["exceptionBreakpointFilters"] =
       Json::array({{{"filter", "fault"}, {"label", "Faults of drives"}, {"default", true}}});
@@ -283,11 +331,13 @@ Json DapServer::launch(const Json& arguments) {
   DapLaunch launch{plant.empty() ? program : plant, arguments.value("unit", ""), arguments.value("case", "")};
   stop_on_entry_ = arguments.value("stopOnEntry", true);
   debugger_.emplace(make_(launch), *this, std::move(snapshots_), runtime::kNever);
+  cost_.begin(*debugger_);
   return Json::object();
 }
 
 Json DapServer::configured(const Json&) {
   debugger();
+  if (only_looks()) return Json::object();
   if (stop_on_entry_)
     report({Reason::Entry, {}, {}, {}});
   else
@@ -297,6 +347,7 @@ Json DapServer::configured(const Json&) {
 
 Json DapServer::restart(const Json&) {
   debugger().restart();
+  cost_.begin(*debugger_);
   told_ = 0;
   if (stop_on_entry_)
     report({Reason::Entry, {}, {}, {}});

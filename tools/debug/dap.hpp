@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "tools/debug/frame_points.hpp"
+#include "tools/debugger/cost.hpp"
 #include "tools/debugger/debugger.hpp"
+#include "tools/debugger/last_writer.hpp"
 
 namespace ipos::tools::debug {
 
@@ -24,12 +26,30 @@ struct DapLaunch {
   std::string test_case;  // of a test that has several
 };
 
+// The run that it wants to look at; none: the only one.
+struct DapAttach {
+  std::optional<int64_t> process;
+};
+
 class DapServer final : public FrontEnd {
  public:
   using Make = std::function<Debuggee(const DapLaunch&)>;  // may throw
   using Send = std::function<void(const Json&)>;
   DapServer(Make make, Send send, std::unique_ptr<Snapshots> snapshots)
       : make_(std::move(make)), send_(std::move(send)), snapshots_(std::move(snapshots)) {}
+
+  // Looks at a run that somebody else goes on with, for an editor that attaches to it.
+  DapServer(runtime::Plant& running, std::string file, Send send) : send_(std::move(send)), looks_at_(std::move(file)) {
+    debugger_.emplace(running, *this);
+  }
+  // What the editor sees of a run that goes on is asked for once more.
+  void show_again();
+
+  // Finds the run that an editor wants to attach to; a Failure where there is none. What came from the editor is for that
+  // run from then on (attached()).
+  std::function<void(const DapAttach&)> attach_to = [](const DapAttach&) { throw ValueError("this adapter attaches to nothing"); };
+  bool attached() const { return attached_; }
+  const std::deque<Json>& for_the_run() const { return queue_; }  // the two requests of its begin first
 
   // Asked for messages while the plant runs; and what another process must know of the input.
   std::function<void()> poll = [] {};
@@ -52,11 +72,15 @@ class DapServer final : public FrontEnd {
 
  private:
   using Handler = Json (DapServer::*)(const Json& arguments);
+  bool only_looks() const { return debugger_ && debugger_->only_looks(); }
+  Json look_instead(const std::string& command, const Json& arguments);
+  void tell_looks(const std::string& command);
   struct Request;
   static const std::vector<Request>& requests();
 
   Json initialize(const Json& arguments);
   Json launch(const Json& arguments);
+  Json attach(const Json& arguments);
   Json configured(const Json& arguments);
   Json set_breakpoints(const Json& arguments);
   Json set_instruction_breakpoints(const Json& arguments);
@@ -78,6 +102,9 @@ class DapServer final : public FrontEnd {
   Json breakpoint_locations(const Json& arguments);
   Json exception_info(const Json& arguments);
   Json read_memory(const Json& arguments);
+  Json goto_targets(const Json& arguments);
+  Json go_to(const Json& arguments);
+  Json loaded_sources(const Json& arguments);
   Json resume(const Json& arguments);
   Json next(const Json& arguments);
   Json step_in(const Json& arguments);
@@ -91,7 +118,10 @@ class DapServer final : public FrontEnd {
   void answer(const Json& message);
   void go();
   bool stop_is_asked() const;
+  void carry_on(Stop stop);
   void report(const Stop& stop);
+  void tell_stop(const std::string& reason, const std::string& text, const std::vector<int>& ids, TaskRef task);
+  std::optional<Json> console_word(const std::string& text, const Json& arguments);
   void tell_journal();
   void event(const std::string& name, Json body);
   void order(Motion line, Motion instruction, bool backward, const Json& arguments);
@@ -131,6 +161,11 @@ class DapServer final : public FrontEnd {
   std::deque<Json> queue_;
   int64_t seq_ = 0;
   bool stop_on_entry_ = true;
+  std::string looks_at_;       // the file of the run
+  bool shows_ = false;         // the editor sees it as stopped
+  bool refreshes_ = false;     // and is able to ask again
+  bool attached_ = false;
+  Json initialize_ = nullptr;  // the request
   std::chrono::steady_clock::time_point began_;  // of the run that is under way
   bool closed_ = false;
   bool ended_ = false;
@@ -141,6 +176,11 @@ class DapServer final : public FrontEnd {
   std::vector<int> function_points_;                         // breakpoints by the name of a function
   std::vector<int> fault_points_;                            // watchpoints on the faults of drives
   FramePoints frames_;
+  Cost cost_;
+  LastWriter who_;
+  Json later_ = nullptr;      // the response to what LastWriter is asked
+  std::optional<TaskRef> later_stop_;  // behind the response: it was set to another statement
+  std::map<int64_t, std::pair<uint32_t, uint32_t>> targets_;  // of jumps, until the next stop: station, address
   std::string fault_;  // that stopped the plant, in words; empty: another reason did
 
   // What the editor may ask for by number until the next stop.
@@ -149,6 +189,7 @@ class DapServer final : public FrontEnd {
     int scope;
     uint32_t first, count;
     std::string name;
+    NLOHMANN_DEFINE_TYPE_INTRUSIVE(Reference, station, scope, first, count, name)
   };
   std::vector<Reference> references_;
 };

@@ -175,8 +175,8 @@ Json DapServer::set_function_breakpoints(const Json& arguments) {
       if (shown.is_null()) shown = breakpoint_json(all.back());
     }
     if (shown.is_null() && FramePoints::is_frame(debugger_->plant(), name)) {
-      frames_.add(debugger_->next_id(), name);
-      shown = {{"id", frames_.all().back().first}, {"verified", true}};
+      frames_.add({debugger_->next_id(), name, asked.value("condition", ""), asked.value("hitCondition", "")});
+      shown = {{"id", frames_.all().back().id}, {"verified", true}};
     }
     if (shown.is_null())
       shown = {{"verified", false},

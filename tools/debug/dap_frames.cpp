@@ -7,6 +7,7 @@
 
 #include "stdlib/headers.hpp"
 #include "tools/debug/dap.hpp"
+#include "tools/debug/jump.hpp"
 #include "tools/input/sources.hpp"
 #include "tools/lsp_base/positions.hpp"
 
@@ -136,6 +137,59 @@ Json DapServer::disassemble(const Json& arguments) {
     all.push_back(std::move(one));
   }
   return {{"instructions", all}};
+}
+
+// The statements that begin at a line, in each station and each copy of its function. The number of a target is that of its
+// command in a view.
+Json DapServer::goto_targets(const Json& arguments) {
+  const Json& source = arguments.at("source");
+  const std::string asked = source.value("path", source.value("name", ""));
+  const std::string file = uris_ ? lsp::path_of(asked) : asked;
+  const uint32_t line = line_of_client(arguments.at("line"));
+  Json all = Json::array();
+  for (uint32_t station = 0; station < debugger().plant().stations().size(); ++station)
+    for (const uint32_t address : statements_at(*debugger_, station, file, line)) {
+      const auto id = static_cast<int64_t>(targets_.size()) + 1;
+      targets_[id] = {station, address};
+      all.push_back({{"id", id},
+                     {"label", fmt::format("{} {}", debugger_->plant().stations()[station]->config().name,
+                                           debugger_->code(station)->function(address))},
+                     {"line", line_for_client(line)},
+                     {"instructionPointerReference", command_reference(station, address)}});
+    }
+  return {{"targets", std::move(all)}};
+}
+
+// The thread stands there now, and nothing has been executed.
+Json DapServer::go_to(const Json& arguments) {
+  const TaskRef task = task_of(arguments, "threadId");
+  const auto target = targets_.find(arguments.at("targetId").get<int64_t>());
+  if (target == targets_.end()) throw ValueError("there is no such target");
+  if (target->second.first != task.station)
+    throw ValueError(fmt::format("that is a program of another station than {}", debugger_->task_name(task)));
+  // The editor shows a line once: of its copies the one of the function that the task is in.
+  uint32_t address = target->second.second;
+  const CodeMap& code = *debugger_->code(task.station);
+  const SourcePlace place = code.place(address);
+  const std::vector<Frame> frames = debugger_->frames(task);
+  if (place.line != 0 && !frames.empty())
+    for (const uint32_t other : statements_at(*debugger_, task.station, place.file, place.line))
+      if (code.function(other) == code.function(frames.front().address)) address = other;
+  jump(*debugger_, task, address);
+  later_stop_ = task;
+  return Json::object();
+}
+
+// All sources that a program was compiled from, each once.
+Json DapServer::loaded_sources(const Json&) {
+  std::vector<std::string> files;
+  for (const auto& station : debugger().plant().stations())
+    if (station->image() != nullptr)
+      for (const std::string& file : station->image()->files)
+        if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+  Json all = Json::array();
+  for (const std::string& file : files) all.push_back(source_for_client(file));
+  return {{"sources", std::move(all)}};
 }
 
 }  // namespace ipos::tools::debug

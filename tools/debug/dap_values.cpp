@@ -218,6 +218,7 @@ Json DapServer::evaluate_text(const Json& arguments) {
       text.resize(text.size() - ending.size());
       break;
     }
+  if (const auto answer = console_word(text, arguments)) return *answer;
   const size_t at = text.find('=');
   const bool writes = arguments.value("context", "") == "repl" && at != std::string::npos && at != 0 &&
                       at + 1 < text.size() && text[at + 1] != '=' &&
@@ -234,6 +235,22 @@ Json DapServer::evaluate_text(const Json& arguments) {
   if (const auto place = find_value(plant, station, name))
     return {{"result", value_text(*place, hex)}, {"variablesReference", 0}};
   return {{"result", number_text(evaluate(plant, station, name), hex)}, {"variablesReference", 0}};
+}
+
+// Words of `ipos debug` that an editor has no request for; in the console, two words are never an expression.
+std::optional<Json> DapServer::console_word(const std::string& text, const Json& arguments) {
+  if (arguments.value("context", "") != "repl") return std::nullopt;
+  const auto told = [](std::string result) {
+    while (result.ends_with('\n')) result.pop_back();
+    return Json{{"result", result}, {"variablesReference", 0}};
+  };
+  if (only_looks()) return std::nullopt;
+  if (text == "info cost") return told(cost_.text(*debugger_));
+  if (!text.starts_with("who ")) return std::nullopt;
+  TaskRef task;
+  if (arguments.contains("frameId")) task = task_of({{"id", arguments["frameId"].get<int>() / kFramesOfTask}}, "id");
+  order_ = who_.ask(*debugger_, task, evaluate_place(debugger_->plant(), station_of_frame(arguments), text.substr(4)));
+  return Json::object();  // carry_on() answers
 }
 
 // A structure opens to its members, an array to its elements.
@@ -264,6 +281,9 @@ Json DapServer::completions(const Json& arguments) {
   const std::string word = text.substr(begin, column - begin);
   const runtime::Station& unit = *debugger().plant().stations()[station];
   Json all = Json::array();
+  for (const std::string_view known : {"who ", "info cost"})
+    if (begin == 0 && !word.empty() && known.starts_with(word))
+      all.push_back({{"label", known}, {"start", column_for_client(1)}, {"length", word.size()}, {"type", "keyword"}});
   for (const signals::Signal& signal : signals::station_signals(unit)) {
     const std::string name(signal.own_name());
     if (name.starts_with(word))

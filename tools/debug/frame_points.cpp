@@ -16,11 +16,12 @@ bool FramePoints::is_frame(const runtime::Plant& plant, std::string_view pattern
 }
 
 void FramePoints::built(runtime::Plant& plant) {
+  plant_ = &plant;
   for (const auto& bus : plant.buses()) bus->add_observer(*this);
 }
 
 bool FramePoints::remove(int id) {
-  return std::erase_if(points_, [id](const Point& point) { return point.first == id; }) != 0;
+  return std::erase_if(points_, [id](const FramePoint& point) { return point.id == id; }) != 0;
 }
 
 void FramePoints::listen(bool forward) {
@@ -30,11 +31,21 @@ void FramePoints::listen(bool forward) {
 
 void FramePoints::on_message(const runtime::Bus& bus, const runtime::BusMessage& message) {
   if (!forward_ || has_seen()) return;
-  for (const auto& [id, pattern] : points_)
-    if (signals::matches(pattern, message.text) || signals::matches(pattern, bus.name() + " " + message.text)) {
-      id_ = id;
-      seen_ = fmt::format("{} on {}", message.text, bus.name());
+  for (FramePoint& point : points_) {
+    if (!point.enabled ||
+        (!signals::matches(point.pattern, message.text) && !signals::matches(point.pattern, bus.name() + " " + message.text)))
+      continue;
+    std::string wrong;
+    try {
+      if (!point.condition.empty() && evaluate(*plant_, 0, point.condition) == 0) continue;
+      if (!hits_hold(*plant_, 0, point.hit_condition, ++point.hits)) continue;
+    } catch (const ValueError& error) {  // its user sees it
+      wrong = fmt::format(": {}", error.what());
     }
+    id_ = point.id;
+    seen_ = fmt::format("{} on {}{}", message.text, bus.name(), wrong);
+    return;
+  }
 }
 
 }  // namespace ipos::tools::debug

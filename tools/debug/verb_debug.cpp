@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 
 #include "compiler/diag/places.hpp"
 #include "tools/cli/end_of_process.hpp"
@@ -17,6 +18,7 @@
 #include "tools/debug/editor_port.hpp"
 #include "tools/debug/heard_messages.hpp"
 #include "tools/debug/line_input.hpp"
+#include "tools/debug/onlookers.hpp"
 #include "tools/input/folder_plant.hpp"
 #include "tools/input/plant_input.hpp"
 #include "tools/input/plant_source.hpp"
@@ -32,6 +34,7 @@ struct DebugFlags {
   std::string file;
   std::string test_case;
   std::string duration = "60s";
+  std::string attach;  // a process, or "*": the only run
   uint32_t speed = 0;
   bool snapshots = true;
   std::optional<uint16_t> port;
@@ -70,6 +73,21 @@ debug::Debuggee debuggee_or_why(const DebugFlags& flags) {
 
 std::unique_ptr<debug::Snapshots> snapshots_of(const DebugFlags& flags) {
   return flags.snapshots ? snapshots_of_process() : nullptr;
+}
+
+// Of the option: a number, or nothing for the only one.
+std::optional<int64_t> process_of(const std::string& text) {
+  if (text == "*") return std::nullopt;
+  int64_t process = 0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), process);
+  if (status != std::errc() || end != text.data() + text.size())
+    throw Failure(kUsage, fmt::format("--attach: '{}' is no number of a process", compiler::printable(text)));
+  return process;
+}
+
+int look_at_run(const DebugFlags& flags) {
+  if (!flags.file.empty()) throw Failure(kUsage, "--attach looks at a run, which knows its file");
+  return debug::console_of_run(debug::chosen_run(process_of(flags.attach)));
 }
 
 int debug_console(const DebugFlags& flags) {
@@ -131,8 +149,16 @@ int serve(const DebugFlags& flags, int in, int out) {
     reader = {};
     reader.feed(state["rest"].get<std::string>());
   };
+  std::unique_ptr<debug::Peer> run;
+  server.attach_to = [&run](const debug::DapAttach& wanted) {
+    run = debug::attach_to(debug::chosen_run(wanted.process));
+    if (!run) throw Failure(kIoError, "that run cannot be looked at any more");
+  };
   while (!server.ended()) {
-    if (server.handle_next()) continue;
+    if (server.handle_next()) {
+      if (server.attached()) return debug::editor_of_run(*run, in, out, {server.for_the_run(), reader.rest()});
+      continue;
+    }
     if (!open) break;
     receive(true);
   }
@@ -168,9 +194,11 @@ void add_debug(cli::Verb& app) {
               "source (.IPC), image (.ipx), plant (.toml), test (.test.toml) or folder; default: the only plant of this folder");
   verb.option("--case", flags->test_case, "of a test that has several");
   verb.option("--for", flags->duration, "virtual time to run at most; default 60s").check(check_time, "TIME");
+  verb.flag("--attach", flags->attach, "*", "look at an 'ipos run --realtime' that goes on: the only one, or --attach=PROCESS");
   add_common(verb, *flags);
   verb.footer("Example, 'help' lists the words:\n  ipos debug examples/scom/scom.toml");
   verb.runs([flags] {
+    if (!flags->attach.empty()) return look_at_run(*flags);
     flags->file = plant_or_program(flags->file);
     return replaceable([&] { return debug_console(*flags); });
   });

@@ -26,6 +26,7 @@ class CodeMap {
   // The image must outlive the map.
   explicit CodeMap(const vm::Image& image);
 
+  bool is_of(const vm::Image* image) const { return image == &image_; }
   // A step stops here: the first command of a line. Without a line table every command.
   bool starts_line(uint32_t address) const;
   bool is_command(uint32_t address) const;

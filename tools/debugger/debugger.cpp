@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "vm/exec/saved_state.hpp"
+
 namespace ipos::tools::debug {
 namespace {
 
@@ -17,6 +19,10 @@ constexpr Time kSnapshotTime = 250 * runtime::kMillisecond;
 constexpr uint64_t kAtOnce = 1'000'000;
 constexpr const char* kBeginning = "this is the beginning of the run";
 
+// An action that the debugger itself carries out.
+constexpr const char* kJump = "jump";
+bool is_jump(const Json& action) { return action.is_object() && action.value("act", "") == kJump; }
+
 bool is_far(const Position& from, const Position& to) {
   return to.commands - from.commands >= kSnapshotCommands || to.time - from.time >= kSnapshotTime;
 }
@@ -24,21 +30,48 @@ bool is_far(const Position& from, const Position& to) {
 }  // namespace
 
 Debugger::Debugger(Debuggee what, FrontEnd& front_end, std::unique_ptr<Snapshots> snapshots, Time limit)
-    : what_(std::move(what)), front_end_(front_end), limit_(limit), snapshots_(std::move(snapshots)) {
+    : what_(std::move(what)), front_end_(front_end), limit_(limit), plant_(nullptr, Release{}), snapshots_(std::move(snapshots)) {
   build();
+}
+
+Debugger::Debugger(runtime::Plant& running, FrontEnd& front_end)
+    : what_(MakePlant()), front_end_(front_end), limit_(runtime::kNever), plant_(&running, Release{false}) {
+  for (const auto& station : plant_->stations()) {
+    machines_.push_back(nullptr);
+    codes_.emplace_back();
+    if (station->image() != nullptr) codes_.back().emplace(*station->image());
+  }
+  look();
+}
+
+// A program may have been loaded meanwhile, through the indices of the program memory or by a download.
+void Debugger::look() {
+  position_ = {0, plant_->now(), Phase::Between};
+  for (uint32_t station = 0; station < plant_->stations().size(); ++station) {
+    const vm::Image* image = plant_->stations()[station]->image();
+    if (const CodeMap* known = code(station); known == nullptr ? image != nullptr : !known->is_of(image)) program_changed(station);
+    for (int context = 1; machine(station) != nullptr && context <= vm::kContexts; ++context)
+      position_.commands += machine(station)->context(context).commands;
+  }
+}
+
+void Debugger::refuse_to_act() const {
+  if (only_looks()) throw ValueError("the run is only looked at: it goes on, and nothing stops it or writes into it");
 }
 
 void Debugger::build() {
   codes_.clear();
+  machines_.clear();
   companion_.reset();
   plant_.reset();  // its files are closed before they are opened again
-  plant_ = what_.make();
+  plant_ = {what_.make().release(), Release{}};
   if (what_.accompany)
     companion_ = what_.accompany(*plant_, [this](const std::string& text) {
       if (goal_.kind == Goal::Kind::Forward || resumes_) front_end_.output(text);
     });
   for (const auto& station : plant_->stations()) {
     station->use_runner(*this);
+    machines_.push_back(nullptr);
     codes_.emplace_back();
     if (station->image() != nullptr) codes_.back().emplace(*station->image());
   }
@@ -71,6 +104,7 @@ Order Debugger::order_for(Motion motion, TaskRef task, bool backward) const {
 }
 
 Stop Debugger::run(const Order& order) {
+  refuse_to_act();
   goal_ = {};
   goal_.order = order;
   start_ = position_;
@@ -87,6 +121,7 @@ Stop Debugger::run(const Order& order) {
 }
 
 Stop Debugger::visit(Time time) {
+  refuse_to_act();
   const Stop there{Reason::Step, {}, {}, {}};
   // The beginning comes before what happens at 0 s.
   const bool back = time == 0 ? position_ > Position{} : position_.time > time;
@@ -106,6 +141,7 @@ Stop Debugger::visit(Time time) {
 }
 
 Stop Debugger::return_to(const Position& moment) {
+  refuse_to_act();
   const Stop there{Reason::Step, {}, {}, {}};
   if (position_ >= moment) return there;
   goal_ = {};
@@ -127,6 +163,7 @@ void Debugger::drop_later() {
 }
 
 void Debugger::run_again() {
+  refuse_to_act();
   takes_snapshots_ = false;
   goal_ = {};
   goal_.kind = Goal::Kind::Replay;
@@ -139,6 +176,7 @@ void Debugger::run_again() {
 // Without copies: one of them would go on with what its caller does next. A moment that this plant does not come to ends with
 // its time.
 Stop Debugger::resume(std::vector<Change> changes, const Position& moment) {
+  refuse_to_act();
   changes_ = std::move(changes);
   furthest_ = {};
   goal_ = {};
@@ -158,6 +196,7 @@ Stop Debugger::resume(std::vector<Change> changes, const Position& moment) {
 }
 
 void Debugger::restart(std::optional<Debuggee> next) {
+  refuse_to_act();
   if (snapshots_) snapshots_->clear();
   changes_.clear();
   furthest_ = {};
@@ -246,6 +285,8 @@ bool Debugger::arrived(Phase phase) {
     if (const Change& change = changes_[next_change_]; change.at == position_) {
       if (change.action.is_null())
         write_value(find_again(*plant_, change.place), change.value);
+      else if (is_jump(change.action))
+        set_next(change.action["who"].get<TaskRef>(), change.action["address"].get<uint32_t>());
       else
         front_end_.perform(change.action);
     }
@@ -267,6 +308,7 @@ uint64_t Debugger::commands_to_look_at() const {
 bool Debugger::run(Station& station, vm::Machine& machine, vm::TickSteps& steps) {
   const auto number = static_cast<uint32_t>(&station.config() - plant_->file().stations.data());
   const bool follows = goal_.repeats() && front_end_.follows_commands();
+  machines_[number] = &machine;
   while (const int task = steps.task()) {
     if (const uint64_t away = commands_to_look_at(); away > 1) {
       if (follows) front_end_.executes(number, machine.context(machine.active_context(task)).pc);
@@ -394,13 +436,35 @@ void Debugger::load(const std::string& bytes) {
 }
 
 void Debugger::write(const ValuePlace& place, int32_t value) {
+  refuse_to_act();
   write_value(place, value);
   drop_later();
   changes_.push_back({position_, place, value, nullptr});
   next_change_ = changes_.size();
 }
 
+void Debugger::go_on_at(TaskRef task, uint32_t address) {
+  refuse_to_act();
+  set_next(task, address);
+  drop_later();
+  changes_.push_back({position_, {}, 0, {{"act", kJump}, {"who", task}, {"address", address}}});
+  next_change_ = changes_.size();
+}
+
+void Debugger::set_next(TaskRef task, uint32_t address) {
+  vm::Machine* const of_task = machines_[task.station];
+  if (of_task == nullptr) throw ValueError("nothing of that program has been executed yet");
+  const int context = of_task->active_context(task.task);
+  switch (of_task->context(context).state) {
+    case vm::TaskState::Stopped: throw ValueError(fmt::format("{} is stopped and goes on nowhere", task_name(task)));
+    case vm::TaskState::Waiting: throw ValueError(fmt::format("{} waits inside a command, which must end first", task_name(task)));
+    case vm::TaskState::Ready: break;
+  }
+  vm::SavedState::go_on_at(*of_task, context, address);
+}
+
 void Debugger::perform(const Json& action) {
+  refuse_to_act();
   front_end_.perform(action);
   drop_later();
   changes_.push_back({position_, {}, 0, action});

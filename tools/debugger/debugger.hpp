@@ -68,6 +68,11 @@ class Debugger final : private runtime::CommandRunner {
  public:
   // With snapshots steps back are fast, but run() may go on in another process. `limit` ends the run.
   Debugger(Debuggee what, FrontEnd& front_end, std::unique_ptr<Snapshots> snapshots, runtime::Time limit);
+  // Looks at a plant that somebody else runs, between two of its milliseconds: it shows, and refuses (ValueError) whatever
+  // would run, stop or change it. look() notes the moment.
+  Debugger(runtime::Plant& running, FrontEnd& front_end);
+  bool only_looks() const { return !what_.make; }
+  void look();
 
   // Carries out an order. Fill the frame of a step with order_for().
   Stop run(const Order& order);
@@ -114,6 +119,9 @@ class Debugger final : private runtime::CommandRunner {
   void write(const ValuePlace& place, int32_t value);
   // The same for what only the front end knows how to do. What it throws is thrown on, and nothing was done.
   void perform(const Json& action);
+  // The task executes that command next, in place of the one it stands at; done again as what is written. Throws ValueError
+  // where the task does not run or waits inside a command.
+  void go_on_at(TaskRef task, uint32_t address);
   // What was done so far, in the order of time, and what is done again when time comes there.
   const std::vector<Change>& changes() const { return changes_; }
 
@@ -136,7 +144,7 @@ class Debugger final : private runtime::CommandRunner {
   std::optional<Stop> task_ended() const;
   std::optional<Stop> data_changed(bool backward);
   bool holds(Breakpoint& breakpoint, bool backward);
-  bool hits_hold(uint32_t station, const std::string& condition, uint64_t hits) const;
+  void set_next(TaskRef task, uint32_t address);
   bool take(Stop stop);
   void candidate(const Position& at, Stop stop);
   void rewind(const Position& to, bool strictly);
@@ -152,9 +160,17 @@ class Debugger final : private runtime::CommandRunner {
   Debuggee what_;
   FrontEnd& front_end_;
   runtime::Time limit_;
-  std::unique_ptr<runtime::Plant> plant_;
+  struct Release {  // of the plant, where it is not another one's
+    bool owned = true;
+    void operator()(runtime::Plant* plant) const {
+      if (owned) delete plant;
+    }
+  };
+  void refuse_to_act() const;
+  std::unique_ptr<runtime::Plant, Release> plant_;
   std::unique_ptr<Companion> companion_;  // of this plant
   std::vector<std::optional<CodeMap>> codes_;
+  std::vector<vm::Machine*> machines_;  // of the stations, once they have executed commands
   std::unique_ptr<Snapshots> snapshots_;  // none: it runs again from the beginning
   bool resumes_ = false;
   bool takes_snapshots_ = true;
@@ -178,5 +194,8 @@ class Debugger final : private runtime::CommandRunner {
   bool told_all_ended_ = false;
   Position last_snapshot_;
 };
+
+// Whether a point stops at so many hits: "N" is from that one on, "% N" each Nth, else a comparison. Throws ValueError.
+bool hits_hold(const runtime::Plant& plant, uint32_t station, const std::string& condition, uint64_t hits);
 
 }  // namespace ipos::tools::debug

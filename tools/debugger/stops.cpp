@@ -10,12 +10,11 @@ namespace ipos::tools::debug {
 
 using runtime::Station;
 
-// "N" is from that one on, "% N" each Nth, else a comparison.
-bool Debugger::hits_hold(uint32_t station, const std::string& condition, uint64_t hits) const {
+bool hits_hold(const runtime::Plant& plant, uint32_t station, const std::string& condition, uint64_t hits) {
   if (condition.empty()) return true;
   const bool bare = std::isdigit(static_cast<unsigned char>(condition[0])) != 0;
   const bool each = condition[0] == '%';
-  return evaluate(*plant_, station,
+  return evaluate(plant, station,
                   (bare ? "hits >= " : "hits ") + condition + (each ? " == 0" : ""),
                   static_cast<int32_t>(hits)) != 0;
 }
@@ -27,7 +26,7 @@ bool Debugger::holds(Breakpoint& breakpoint, bool backward) {
       return false;
     if (backward) return breakpoint.log.empty();
     ++breakpoint.hits;
-    return hits_hold(breakpoint.station, breakpoint.hit_condition, breakpoint.hits);
+    return hits_hold(*plant_, breakpoint.station, breakpoint.hit_condition, breakpoint.hits);
   } catch (const ValueError& error) {
     front_end_.output(fmt::format("breakpoint {}: {}\n", breakpoint.id, error.what()));
     return true;
@@ -86,7 +85,7 @@ std::optional<Stop> Debugger::data_changed(bool backward) {
     if (!counts) continue;
     if (!backward) ++watchpoint.hits;
     try {
-      if (!backward && !hits_hold(watchpoint.station, watchpoint.hit_condition, watchpoint.hits)) continue;
+      if (!backward && !hits_hold(*plant_, watchpoint.station, watchpoint.hit_condition, watchpoint.hits)) continue;
     } catch (const ValueError& error) {
       front_end_.output(fmt::format("watchpoint {}: {}\n", watchpoint.id, error.what()));
     }

@@ -35,6 +35,7 @@
 #include "tools/recording/trace.hpp"
 #include "tools/recording/trace_forms.hpp"
 #include "tools/run/signal_list.hpp"
+#include "tools/running/onlooker.hpp"
 #include "tools/running/real_time_run.hpp"
 #include "tools/running/run_report.hpp"
 #include "tools/running/watch.hpp"
@@ -62,6 +63,7 @@ struct RunFlags {
   std::string profile;
   std::string format = "text";
   bool realtime = false;
+  bool attach = true;
   bool why = false;
   std::string trace_hash;
   CompileFlags compile;
@@ -327,6 +329,7 @@ int run(const RunFlags& flags) {
   catch_interrupts();
   std::optional<RealTimeRun> real_time;
   if (flags.realtime) real_time.emplace(plant, flags.file);
+  const std::unique_ptr<Onlooker> onlooker = flags.realtime && flags.attach ? onlooker_of(plant, flags.file) : nullptr;
   bool ports_there = true;
   {
     Watcher watcher(flags, plant, limit);
@@ -334,6 +337,7 @@ int run(const RunFlags& flags) {
     const auto keep_going = [&](Time now) {
       if (recorder) recorder->sample(now);
       if (trace_hash) trace_hash->sample(now);
+      if (onlooker) onlooker->look();
       if (flush.due(now)) {
         logs.flush();
         trace.flush();
@@ -419,6 +423,7 @@ void add_run(cli::Verb& app) {
             "everything each 100 ms, or =1ms, ...");
   verb.flag("--realtime", flags->realtime,
             "keep pace with the clock, and join buses that have a port to the real world");
+  verb.off("--no-attach", flags->attach, "with --realtime: nobody can look at the run (ipos debug --attach)");
   verb.flag("--why", flags->why, "also tell what was ignored, and why");
   add_plant_options(verb, flags->compile);
   verb.footer("Example:\n  ipos run examples/scom/scom.toml --for 1s --watch --log can.log");

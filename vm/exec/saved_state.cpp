@@ -131,4 +131,9 @@ const uint8_t* SavedState::read(const uint8_t* bytes, Machine& machine) {
   return in.at();
 }
 
+void SavedState::go_on_at(Machine& machine, int context, uint32_t address) {
+  machine.context_at(context).pc = address;
+  ++machine.begun_;
+}
+
 }  // namespace ipos::vm

@@ -21,6 +21,9 @@ class SavedState {
   // stand at commands and return to commands, waits are in commands that wait, numbers are in their ranges.
   // Uses a bit of stack for each word of the longest program.
   static bool check(const VerifiedImage& program, const uint8_t* bytes);
+
+  // As if the context had been saved in front of another command of the program: for debuggers. It is ready.
+  static void go_on_at(Machine& machine, int context, uint32_t address);
 };
 
 }  // namespace ipos::vm

@@ -55,6 +55,7 @@ export function taskMatchers(definition: TaskDefinition): string[] {
 }
 
 export interface LaunchConfiguration {
+  request?: string;
   program?: string;
   plant?: string;
   args?: string[];
@@ -67,6 +68,7 @@ export function debugCommand(configuration: LaunchConfiguration, settings: Setti
 
 // Why a launch configuration cannot be started; empty when it can.
 export function launchMistake(configuration: LaunchConfiguration): string {
+  if (configuration.request === "attach") return "";  // the run knows its file
   const given = [configuration.program, configuration.plant].filter((path) => path !== undefined && path !== "");
   return given.length === 1 ? "" : "ipos: a launch configuration names either a program or a plant";
 }
