@@ -14,7 +14,7 @@ namespace {
 // what the program can still do.
 constexpr uint32_t kSteadyPause = 32, kAheadPause = 64, kIdlePause = 32, kProgramPause = 1024,
                    kReachPause = 4096;
-// And to move where the tasks or the drive have more to do in the first tick.
+// And to move where that is not possible, or where the tasks or the drive have more to do in the first tick.
 constexpr uint32_t kMovingPause = 64;
 
 }  // namespace
@@ -53,7 +53,11 @@ Ticks ManyTicks::begin_moving(Time first) {
   know_program();
   mode_ = Mode::InFull;
   left_ = 0;
-  if (!moving_backoff_.due(first) || !moving_.possible(reach_)) return 0;
+  if (unit_.drive().standing() || !moving_backoff_.due(first)) return 0;
+  if (!moving_.possible(reach_)) {
+    moving_backoff_.fail(first, kMovingPause);
+    return 0;
+  }
   left_ = unit_.is_led() ? kLatest : std::min(kLatest, steady_backoff_.pause_from(first));
   if (left_ != 0) mode_ = Mode::Moving;
   return left_;

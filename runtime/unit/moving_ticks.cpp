@@ -8,10 +8,11 @@
 namespace ipos::runtime {
 
 bool MovingTicks::possible(const ProgramReach& reach) const {
-  if (unit_.drive().standing() || !unit_.can_only_move()) return false;
-  if (unit_.machine() == nullptr) return true;
-  if (!reach.mute || !reach.apart || !reach.modest) return false;
-  return unit_.is_led() ? !reach.reads_travel : !reach.reads_position;
+  if (unit_.machine() != nullptr) {
+    if (!reach.mute || !reach.apart || !reach.modest) return false;
+    if (unit_.is_led() ? reach.reads_travel : reach.reads_position) return false;
+  }
+  return unit_.can_only_move();
 }
 
 Ticks MovingTicks::advance(Time first, Ticks most, const ProgramReach& reach) {

@@ -15,7 +15,7 @@ class MovingTicks final {
  public:
   explicit MovingTicks(Unit& unit) : unit_(unit) {}
 
-  // After a tick: the next ones may be such ticks, as far as that can be said before. What is asked here stays so until
+  // After a tick, of an axis that moves: the next ones may be such ticks, as far as that can be said before. What is asked here stays so until
   // somebody touches the unit.
   bool possible(const ProgramReach& reach) const;
 
