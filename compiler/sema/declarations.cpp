@@ -246,7 +246,10 @@ bool Context::use_raw(uint32_t number, Span span, std::string_view name) {
   return true;
 }
 
-void declare(const ast::Program& program, Context& context) { Declarations(context).run(program); }
+void declare(const ast::Program& program, Context& context) {
+  context.tree = &program;
+  Declarations(context).run(program);
+}
 
 bool Context::has_room(const Variable& variable) const {
   if (!overflown || variable.storage == Storage::Alias) return true;

@@ -83,7 +83,6 @@ std::optional<checked::Program> check(
     return std::nullopt;
   }
   Context context{unit, sources, diagnostics, {}, {}, {}, {}, {}, {}};
-  context.tree = &program;
   declare(program, context);
   check_bodies(program, context);
   check_numbers(context);

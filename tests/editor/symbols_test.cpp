@@ -199,6 +199,15 @@ TEST(IndexOfAnyText, NamesInTheBodyOfAMacro) {
   EXPECT_EQ(member_meant("#define N 5\n#define M (@N)\nmain() { }"), "N");
 }
 
+// An editor asks while the size is typed: the index declares what the check has given up.
+TEST(IndexOfAnyText, UnknownNamesInDeclarations) {
+  for (const std::string text : {"long v[LAST + 1], w;\nmain() { w = 1; }", "#pragma globals LAST 5\nlong w;\nmain() { w = 1; }",
+                                 "#declare LAST NOBODY + 1\nlong w;\nmain() { w = 1; }"}) {
+    const compiler::ProgramIndex index = index_of(text);
+    EXPECT_NE(index.find("w"), nullptr) << text;
+  }
+}
+
 // A declaration that reaches around its name is the extent of it; one that a macro has brought elsewhere is not.
 TEST(IndexOfAnyText, TheExtentOfADeclarationHasItsNameInIt) {
   const std::string source =
