@@ -162,10 +162,21 @@ class Layout {
     return copy;
   }
 
+  // The commands of a statement mostly stand in one line.
+  Position position(Location at) {
+    const SourceFile* file = place_.file;
+    if (file != nullptr && !at.in_macro() && at.value >= file->base) {
+      const uint32_t offset = at.value - file->base;
+      const std::vector<uint32_t>& starts = file->line_starts;
+      const uint32_t begin = starts[place_.line - 1];
+      if (place_.line < starts.size() && offset >= begin && offset < starts[place_.line])
+        return {file, place_.line, offset - begin + 1};
+    }
+    return place_ = sources_.position(at);
+  }
+
   void add_line(uint32_t address, Span span) {
-    // The commands of an expression often come from one place.
-    if (span.begin != last_begin_) last_place_ = sources_.position(last_begin_ = span.begin);
-    const Position& at = last_place_;
+    const Position at = position(span.begin);
     if (at.file == nullptr) return;
     vm::Image& image = out_.image;
     auto file = std::find(files_.begin(), files_.end(), at.file);
@@ -209,8 +220,7 @@ class Layout {
   std::vector<uint32_t> starts_;    // address of each instance
   std::map<size_t, size_t> named_;  // instances of a function that have a name
   std::vector<const SourceFile*> files_;
-  Location last_begin_;
-  Position last_place_;  // of last_begin_
+  Position place_;  // the last one that was not in the line of that before
   GeneratedProgram out_;
 };
 

@@ -16,7 +16,7 @@ Macro* Macros::expandable(const Token& token) {
   return &found->second;
 }
 
-bool Macros::expand(const Token& token, std::vector<Token>& out, size_t& budget) {
+bool Macros::replace(const Token& token, std::vector<Token>& out, size_t& budget) {
   struct Open {
     Token use;
     Macro* macro;

@@ -31,9 +31,14 @@ class Macros {
 
   // Appends what the token stands for: itself or the text of a macro. Counts every token made down from
   // `budget`; false when that is used up.
-  bool expand(const Token& token, std::vector<Token>& out, size_t& budget);
+  bool expand(const Token& token, std::vector<Token>& out, size_t& budget) {
+    if (token.kind == TokenKind::Name && names_.may_have(token.text)) return replace(token, out, budget);
+    out.push_back(token);
+    return true;
+  }
 
  private:
+  bool replace(const Token& token, std::vector<Token>& out, size_t& budget);
   Macro* expandable(const Token& token);
 
   SourceMap& map_;

@@ -56,6 +56,7 @@ struct Context {
   std::vector<ConstantStore> stores;
   std::vector<AccessPlace> indirect = {};  // uses of a variable that is known at run time only
   std::vector<Contents> contents = {};     // of each function, when all are checked
+  Arena lists = {};                        // where they are
   CallGraph graph = {};                    // then, too
   size_t function = SIZE_MAX;  // index of the function being checked
   size_t order = 0;            // its place among the declarations

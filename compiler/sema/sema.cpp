@@ -44,7 +44,7 @@ void check_bodies(const ast::Program& program, Context& context) {
   }
 }
 
-// The functions are those of program and cannot change any more, so all checks of the whole program can share this.
+// All bodies are checked, and stay as they are while the program as a whole is.
 void list_contents(Context& context) {
   std::vector<const checked::Expr*> expressions;
   std::vector<const checked::Expr*> calls;
@@ -56,7 +56,7 @@ void list_contents(Context& context) {
       if (std::holds_alternative<checked::Call>(expr.node) || std::holds_alternative<checked::SystemCall>(expr.node))
         calls.push_back(&expr);
     });
-    context.contents.push_back({context.program.arena.list(expressions), context.program.arena.list(calls)});
+    context.contents.push_back({context.lists.list(expressions), context.lists.list(calls)});
     std::vector<Reference>& references = context.graph.emplace_back();
     for (const checked::Expr* call : calls)
       if (const auto reference = reference_of(*call)) references.push_back(*reference);

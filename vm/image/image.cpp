@@ -2,25 +2,44 @@
 // Text is stored as u16 length and bytes. Numbers are little endian.
 #include "vm/image/image.hpp"
 
+#include <algorithm>
+
 namespace ipos::vm {
 namespace {
 
 class Writer {
  public:
-  void u8(uint32_t v) { bytes_.push_back(static_cast<uint8_t>(v)); }
-  void u16(uint32_t v) { u8(v), u8(v >> 8); }
-  void u32(uint32_t v) { u16(v), u16(v >> 16); }
+  void u16(uint32_t v) { number<2>(v); }
+  void u32(uint32_t v) { number<4>(v); }
   void text(const std::string& s) {
-    const std::string cut = s.substr(0, 0xFFFF);
-    u16(static_cast<uint32_t>(cut.size()));
-    bytes_.insert(bytes_.end(), cut.begin(), cut.end());
+    const size_t length = std::min<size_t>(s.size(), 0xFFFF);
+    u16(static_cast<uint32_t>(length));
+    std::copy_n(s.data(), length, room(length));
   }
-  void append(const Writer& other) { bytes_.insert(bytes_.end(), other.bytes_.begin(), other.bytes_.end()); }
-  uint32_t size() const { return static_cast<uint32_t>(bytes_.size()); }
-  std::vector<uint8_t>& bytes() { return bytes_; }
+  void append(const Writer& other) { std::copy_n(other.bytes_.data(), other.size_, room(other.size_)); }
+  uint32_t size() const { return static_cast<uint32_t>(size_); }
+  std::span<const uint8_t> written() const { return {bytes_.data(), size_}; }
+  std::vector<uint8_t> take() {
+    bytes_.resize(size_);
+    return std::move(bytes_);
+  }
 
  private:
+  template <size_t kSize>
+  void number(uint32_t v) {
+    uint8_t* const to = room(kSize);
+    for (size_t n = 0; n < kSize; ++n) to[n] = static_cast<uint8_t>(v >> 8 * n);
+  }
+
+  // Where the next bytes go. An image is mostly numbers, thousands of them.
+  uint8_t* room(size_t count) {
+    if (bytes_.size() < size_ + count) bytes_.resize(2 * (size_ + count));
+    size_ += count;
+    return bytes_.data() + (size_ - count);
+  }
+
   std::vector<uint8_t> bytes_;
+  size_t size_ = 0;  // of what is written
 };
 
 Writer symbols_section(const Image& image) {
@@ -135,8 +154,8 @@ std::vector<uint8_t> write_image(const Image& image) {
     offset += payload.size();
   }
   for (const auto& [kind, payload] : sections) out.append(payload);
-  out.u32(crc32(out.bytes()));
-  return std::move(out.bytes());
+  out.u32(crc32(out.written()));
+  return out.take();
 }
 
 ImageResult read_image(std::span<const uint8_t> bytes) {
