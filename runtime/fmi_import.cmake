@@ -6,6 +6,7 @@ if(CMAKE_SYSTEM_NAME STREQUAL Linux AND NOT IPOS_LIBRARY_ONLY)
   set(host ${CMAKE_CURRENT_SOURCE_DIR}/fmi_import/host)
   add_executable(ipos_fmu_host ${host}/host.c ${host}/calls.c ${host}/words.c)
   target_compile_options(ipos_fmu_host PRIVATE -O2 -Wall -Wextra -Wshadow -Werror)
+  set_target_properties(ipos_fmu_host PROPERTIES UNITY_BUILD OFF)  # C has no namespaces
   target_link_options(ipos_fmu_host PRIVATE -s)
   target_link_libraries(ipos_fmu_host PRIVATE Threads::Threads ${CMAKE_DL_LIBS})
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/fmu_host)

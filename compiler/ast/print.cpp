@@ -58,15 +58,14 @@ class Printer {
     }
   }
 
-  std::string take() { return fmt::to_string(out_); }
+  std::string take() { return std::move(out_); }
 
  private:
   template <typename... Args>
   void line(Span span, fmt::format_string<Args...> format, Args&&... args) {
     const Position at = map_.position(span.begin);
-    auto out = std::back_inserter(out_);
-    fmt::format_to(out, "{:{}}{}:{} ", "", 2 * level_, at.line, at.column);
-    fmt::format_to(out, format, std::forward<Args>(args)...);
+    out_ += fmt::format("{:{}}{}:{} ", "", 2 * level_, at.line, at.column);
+    out_ += fmt::format(format, std::forward<Args>(args)...);
     out_.push_back('\n');
   }
 
@@ -149,7 +148,7 @@ class Printer {
   }
 
   const SourceMap& map_;
-  fmt::memory_buffer out_;
+  std::string out_;
   int level_ = 0;
 };
 

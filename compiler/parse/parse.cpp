@@ -32,14 +32,13 @@ ast::Program parse_tokens(const SourceMap& map, const PreprocessedText& text, Di
 }
 
 std::string print_tokens(const SourceMap& map, const SourceFile& main, const PreprocessedText& text) {
-  fmt::memory_buffer out;
+  std::string out;
   for (const Token& token : text.tokens) {
     const Position at = map.position(token.span.begin);
-    if (at.file != nullptr && at.file != &main) fmt::format_to(std::back_inserter(out), "{}:", at.file->name);
-    fmt::format_to(std::back_inserter(out), "{}:{} {}{}{}\n", at.line, at.column, category(token.kind),
-                   token.text.empty() ? "" : " ", token.text);
+    if (at.file != nullptr && at.file != &main) out += fmt::format("{}:", at.file->name);
+    out += fmt::format("{}:{} {}{}{}\n", at.line, at.column, category(token.kind), token.text.empty() ? "" : " ", token.text);
   }
-  return fmt::to_string(out);
+  return out;
 }
 
 }  // namespace ipos::compiler

@@ -77,7 +77,7 @@ void Signal::append_text(std::string& out, int64_t sample) const {
   const bool digits = places < std::size(kPowers) && std::abs(factor * kPowers[places] - 1) < 1e-15 &&
                       sample > -kExact && sample < kExact;
   if (!digits) {
-    fmt::format_to(std::back_inserter(out), "{:.{}f}", static_cast<double>(sample) * factor, decimals);
+    out += fmt::format("{:.{}f}", static_cast<double>(sample) * factor, decimals);
     return;
   }
   std::array<char, 24> text;

@@ -16,10 +16,8 @@ namespace {
 using tests::code_of;
 using tests::I;
 
-constexpr Limits kLimits{1024, 16384, 3, 32};
-
 VerifiedImage verified(const std::vector<uint32_t>& code) {
-  const Verification result = verify(code, kLimits, {});
+  const Verification result = verify(code, Limits{1024, 16384, 3, 32}, {});
   EXPECT_TRUE(result.image.has_value());
   return *result.image;
 }

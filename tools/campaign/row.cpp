@@ -54,8 +54,8 @@ void RowWriter::append(std::string& out, uint64_t id, const Levels& levels,
     if (n != 0) out += ',';
     out += quoted(failed[n]);
   }
-  fmt::format_to(std::back_inserter(out), R"(],"hash":"{}")", hash);
-  if (ms) fmt::format_to(std::back_inserter(out), R"(,"ms":{:.3f})", *ms);
+  out += fmt::format(R"(],"hash":"{}")", hash);
+  if (ms) out += fmt::format(R"(,"ms":{:.3f})", *ms);
   out += "}\n";
 }
 

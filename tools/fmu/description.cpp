@@ -54,7 +54,7 @@ class Writer {
  private:
   template <typename... Values>
   void line(fmt::format_string<Values...> form, Values&&... values) {
-    fmt::format_to(std::back_inserter(out_), form, std::forward<Values>(values)...);
+    out_ += fmt::format(form, std::forward<Values>(values)...);
     out_ += '\n';
   }
 

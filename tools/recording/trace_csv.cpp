@@ -1,7 +1,6 @@
 // CSV after RFC 4180, but with plain line ends.
 #include <fmt/format.h>
 
-#include <iterator>
 #include <utility>
 
 #include "tools/recording/trace.hpp"
@@ -44,7 +43,7 @@ class CsvTrace final : public TraceWriter {
       const bool had_frames = std::exchange(has_frames_, false);
       for (; frame != part.frames.end() && frame->time <= part.times[row]; ++frame) add(*frame);
       if (change != first || has_frames_ || had_frames) make_row();
-      fmt::format_to(std::back_inserter(text_), "{}", part.times[row] / runtime::kMillisecond);
+      text_ += fmt::to_string(part.times[row] / runtime::kMillisecond);
       text_ += row_;
     }
     give();

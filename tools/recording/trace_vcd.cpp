@@ -190,7 +190,7 @@ class VcdTrace final : public TraceWriter {
   void at(runtime::Time time) {
     if (time == now_) return;
     now_ = time;
-    fmt::format_to(std::back_inserter(text_), "#{}\n", time);
+    text_ += fmt::format("#{}\n", time);
   }
 
   void add(const Change& change) {

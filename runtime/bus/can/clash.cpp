@@ -39,11 +39,6 @@ void hold_dominant(WireBits& bits, uint32_t begin, uint32_t end) {
   bits.count = std::min(std::max(bits.count, end), capacity(bits));
 }
 
-uint32_t next_recessive(const WireBits& bits, uint32_t from) {
-  while (from < bits.count && !bits.recessive[from]) ++from;
-  return from;
-}
-
 }  // namespace
 
 Clash clash_of_listener(const WireBits& frame, bool extended, bool sender_active, TwoRates rates) {

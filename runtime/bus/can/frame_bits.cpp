@@ -70,6 +70,11 @@ WireBits wire_bits(const Frame& frame) {
   return out.bits();
 }
 
+uint32_t next_recessive(const WireBits& bits, uint32_t from) {
+  while (from < bits.count && !bits.recessive[from]) ++from;
+  return from;
+}
+
 namespace {
 
 // The same by bytes, for the length alone. State of the stuffing: the last bit, and how many bits before it

@@ -20,6 +20,9 @@ struct WireBits {
 
 WireBits wire_bits(const Frame& frame);
 
+// The first recessive bit from there on; bits.count when there is none.
+uint32_t next_recessive(const WireBits& bits, uint32_t from);
+
 // Exact length with stuff bits.
 uint32_t frame_bits(const Frame& frame);
 

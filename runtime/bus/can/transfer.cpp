@@ -29,11 +29,6 @@ uint32_t first_difference(const WireBits& a, const WireBits& b) {
   return position;
 }
 
-uint32_t next_recessive(const WireBits& bits, uint32_t position) {
-  while (!bits.recessive[position]) ++position;
-  return position;
-}
-
 // End of the superposed error flags when an error-active sender sees a dominant bit at `error` in place of
 // its own recessive one. The sender of that dominant bit finds out at its next recessive bit, listeners at
 // the sixth equal bit or at the CRC delimiter.

@@ -8,18 +8,10 @@
 
 #include "runtime/bus/can/identifier_text.hpp"
 #include "runtime/bus/can/line.hpp"
+#include "runtime/bus/log/characters.hpp"
 
 namespace ipos::runtime {
 namespace {
-
-int hex_digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  return -1;
-}
-
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
 // Walks over one line; each parsing step is false, with the message set, at the first wrong character.
 class LineReader {

@@ -4,23 +4,11 @@
 #include <charconv>
 #include <optional>
 
+#include "runtime/bus/log/characters.hpp"
 #include "runtime/bus/log/serial_log.hpp"
 
 namespace ipos::runtime {
 namespace {
-
-constexpr std::string_view kBlanks = " \t\r";
-
-bool is_blank(char c) { return kBlanks.find(c) != std::string_view::npos; }
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-int hex_digit(char c) {
-  if (is_digit(c)) return c - '0';
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  return -1;
-}
 
 std::optional<SerialError> error_of(std::string_view text) {
   for (size_t n = 0; n < kSerialErrors; ++n)
