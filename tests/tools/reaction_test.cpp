@@ -97,6 +97,81 @@ TEST(Reaction, IsNeverBelowWhatRunsShow) {
   }
 }
 
+// Three stations in a row: the middle one hands on what it gets, in its own loop, each with its own period. The worst of 500
+// changes at random moments is below the figure, and the figure is not far above it.
+TEST(Reaction, GoesOnFromStationToStation) {
+  const auto station = [](const std::string& name, const std::string& program, int address, const std::string& more) {
+    return "[[station]]\nname = \"" + name + "\"\nunit = \"mdxb\"\nprogram = \"" + program +
+           "\"\nsbus = \"sbus\"\n[station.parameters]\nP881 = " + std::to_string(address) + "\nP884 = 0\n" + more;
+  };
+  const std::string text = "[[bus]]\nname = \"sbus\"\nkind = \"can\"\nbaud = 125000\n" + station("first", "A.IPC", 1, "P601 = 16\n") +
+                           station("middle", "M.IPC", 2, "") + station("last", "B.IPC", 3, "P620 = 21\n");
+  const std::string head = "#include <constb.h>\n#include <iob.h>\n";
+  const TemporaryFolder folder;
+  folder.write("A.IPC", head + "SCTRCYCL Tr; long lData;\nmain()\n{\n  Tr.ObjectNo = 1100; Tr.CycleTime = 10; Tr.Format = 4; Tr.DPointer = numof(lData);\n"
+                               "  _SBusCommDef(SCD_TRCYCL, Tr);\n  _SBusCommOn();\n  while (1) { if (DI02) lData = 1; else lData = 0; }\n}\n");
+  folder.write("M.IPC", head + "SCREC Re; SCTRCYCL Tr; long lIn, lOut;\nmain()\n{\n  Re.ObjectNo = 1100; Re.Format = 4; Re.DPointer = numof(lIn);\n"
+                               "  _SBusCommDef(SCD_REC, Re);\n  Tr.ObjectNo = 1101; Tr.CycleTime = 20; Tr.Format = 4; Tr.DPointer = numof(lOut);\n"
+                               "  _SBusCommDef(SCD_TRCYCL, Tr);\n  _SBusCommOn();\n  while (1) { lOut = lIn; _Wait(4); }\n}\n");
+  folder.write("B.IPC", head + "SCREC Re; long lData;\nmain()\n{\n  Re.ObjectNo = 1101; Re.Format = 4; Re.DPointer = numof(lData);\n"
+                               "  _SBusCommDef(SCD_REC, Re);\n  _SBusCommOn();\n  while (1) { if (lData) SET_DO01; else CLEAR_DO01; }\n}\n");
+  folder.write("p.toml", text);
+  const CommandResult planned = run_ipos({"bus", "plan", "p.toml", "--reaction", "--format", "json"}, folder.path());
+  ASSERT_EQ(planned.exit_code, 0) << planned.err;
+  const auto report = nlohmann::json::parse(planned.out);
+  const auto& chains = report["reaction_chains"];
+  ASSERT_EQ(chains.size(), 1U) << planned.out;
+  EXPECT_EQ(chains[0]["stations"], (nlohmann::json{"first", "middle", "last"}));
+  EXPECT_EQ(chains[0]["objects"], (nlohmann::json{1100, 1101}));
+  EXPECT_EQ(chains[0]["round"], false);
+  ASSERT_FALSE(chains[0]["from_input_ns"].is_null()) << chains[0]["because"];
+  const double worst = chains[0]["from_input_ns"].get<double>() / 1e6;
+  // No less than both periods, and more than either hop alone.
+  EXPECT_GT(worst, report["reactions"][0]["from_input_ns"].get<double>() / 1e6 + 20);
+  std::mt19937 random(11);
+  std::string stimuli;
+  std::vector<double> moments;
+  double at = 300;
+  for (int n = 0; n < 500; ++n) {
+    at = std::round((at + worst + 5 + std::uniform_real_distribution<>(0, 100)(random)) * 1000) / 1000;
+    moments.push_back(at);
+    stimuli += "[[stimulus]]\nstation = \"first\"\nat = \"" + std::to_string(static_cast<int64_t>(std::llround(at * 1000))) +
+               "us\"\ninput = \"DI02\"\nset = " + (n % 2 == 0 ? "1" : "0") + "\n";
+  }
+  folder.write("p.toml", text + stimuli);
+  const CommandResult run = run_ipos({"run", "p.toml", "--for", std::to_string(static_cast<int64_t>(at + worst + 10)) + "ms", "--trace", "-",
+                                      "--signals", "last.DO01"},
+                                     folder.path());
+  const std::vector<double> seen = changes(run.out);
+  ASSERT_EQ(seen.size(), moments.size()) << run.err << run.out.substr(0, 200);
+  double longest = 0;
+  for (size_t n = 0; n < seen.size(); ++n) longest = std::max(longest, seen[n] - moments[n]);
+  EXPECT_LE(longest, worst);
+  EXPECT_GE(longest, worst / 3) << "a figure of no use";
+}
+
+// Who sends back what it gets closes a round, and the search ends there.
+TEST(Reaction, ARoundIsSaid) {
+  const auto program = [](int sends, int takes) {
+    return "#include <constb.h>\n#include <iob.h>\nSCREC Re; SCTRCYCL Tr; long lIn, lOut;\nmain()\n{\n  Re.ObjectNo = " + std::to_string(takes) +
+           "; Re.Format = 4; Re.DPointer = numof(lIn);\n  _SBusCommDef(SCD_REC, Re);\n  Tr.ObjectNo = " + std::to_string(sends) +
+           "; Tr.CycleTime = 10; Tr.Format = 4; Tr.DPointer = numof(lOut);\n  _SBusCommDef(SCD_TRCYCL, Tr);\n  _SBusCommOn();\n"
+           "  while (1) lOut = lIn + DI02;\n}\n";
+  };
+  const TemporaryFolder folder;
+  folder.write("A.IPC", program(1100, 1101));
+  folder.write("B.IPC", program(1101, 1100));
+  folder.write("p.toml", plant({}));
+  const CommandResult planned = run_ipos({"bus", "plan", "p.toml", "--reaction", "--format", "json"}, folder.path());
+  const auto chains = nlohmann::json::parse(planned.out)["reaction_chains"];
+  ASSERT_EQ(chains.size(), 2U) << planned.out;
+  for (const auto& chain : chains) {
+    EXPECT_EQ(chain["round"], true);
+    EXPECT_EQ(chain["stations"].front(), chain["stations"].back());
+  }
+  EXPECT_NE(run_ipos({"bus", "plan", "p.toml", "--reaction"}, folder.path()).out.find("it is a round"), std::string::npos);
+}
+
 std::string because(const std::string& a, const std::string& b) {
   const TemporaryFolder folder;
   folder.write("A.IPC", a);

@@ -8,6 +8,7 @@
 #include "runtime/bus_plan/plan.hpp"
 #include "tools/bus/bus_verbs.hpp"
 #include "tools/bus/reaction.hpp"
+#include "tools/bus/reaction_chains.hpp"
 #include "tools/cli/exit_codes.hpp"
 #include "tools/cli/json_text.hpp"
 #include "tools/input/plant_input.hpp"
@@ -239,6 +240,22 @@ nlohmann::ordered_json reaction_json(const Reaction& one) {
           {"because", one.because}};
 }
 
+nlohmann::ordered_json chain_json(const ReactionChain& chain, const std::vector<Reaction>& reactions) {
+  using nlohmann::ordered_json;
+  ordered_json stations = {reactions[chain.hops.front()].sender}, objects = ordered_json::array(), lines = ordered_json::array();
+  for (const size_t hop : chain.hops) {
+    stations.push_back(reactions[hop].receiver);
+    objects.push_back(reactions[hop].object);
+    lines.push_back(reactions[hop].line);
+  }
+  return {{"stations", stations},
+          {"objects", objects},
+          {"lines", lines},
+          {"from_input_ns", chain.from_input ? ordered_json(*chain.from_input) : ordered_json()},
+          {"because", chain.because},
+          {"round", chain.is_round}};
+}
+
 std::string json_report(const BusPlan& plan, const std::optional<std::vector<Reaction>>& reactions) {
   using nlohmann::ordered_json;
   ordered_json report = {{"trial_ns", plan.trial}, {"acyclic_ns", plan.acyclic}};
@@ -259,6 +276,10 @@ std::string json_report(const BusPlan& plan, const std::optional<std::vector<Rea
   if (reactions) {
     report["reactions"] = ordered_json::array();
     for (const Reaction& one : *reactions) report["reactions"].push_back(reaction_json(one));
+    const ReactionChains chains = reaction_chains(*reactions);
+    report["reaction_chains"] = ordered_json::array();
+    for (const ReactionChain& chain : chains.all) report["reaction_chains"].push_back(chain_json(chain, *reactions));
+    report["reaction_chains_left_out"] = chains.left_out != 0;
   }
   return json_text(report) + "\n";
 }
@@ -287,7 +308,7 @@ int plan_bus(const PlanFlags& flags) {
       fmt::print("{}{}", std::exchange(gap, "\n"), serial_text(line, plan.trial));
     for (const auto& line : plan.profibus_lines)
       fmt::print("{}{}", std::exchange(gap, "\n"), profibus_text(line));
-    if (reacts) fmt::print("{}{}", std::exchange(gap, ""), reactions_text(*reacts));
+    if (reacts) fmt::print("{}{}{}", std::exchange(gap, ""), reactions_text(*reacts), chains_text(reaction_chains(*reacts), *reacts));
     if (!plan.lines.empty()) fmt::print("{}{}", gap, assumptions(plan));
     for (const Finding& finding : plan.findings) fmt::print(stderr, "{}", finding_text(finding));
   }
