@@ -657,8 +657,11 @@ TEST_F(Serving, BreakpointsStopTheRunAndStepsGoOn) {
   EXPECT_EQ(value("saw.lCount"), 4);
   good({{"do", "program.step"}, {"station", "saw"}, {"kind", "over"}});
   EXPECT_EQ(page.event("time")["stopped"]["line"], 10);
+  EXPECT_EQ(page.event("time")["stopped"]["cost"]["commands"], page.event("time")["stopped"]["cost"]["us"].get<int>() / 1000)
+      << "a command a millisecond";
   good({{"do", "program.step"}, {"station", "saw"}, {"kind", "over"}, {"back", true}});
   EXPECT_EQ(page.event("time")["stopped"]["line"], 9);
+  EXPECT_FALSE(page.event("time")["stopped"].contains("cost")) << "time went back";
   const Json program = topic({{"topic", "program"}, {"station", "saw"}});
   EXPECT_EQ(program["tasks"][0]["line"], 9);
   EXPECT_EQ(program["breakpoints"].size(), 1U);

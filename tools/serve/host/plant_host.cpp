@@ -110,6 +110,7 @@ void PlantHost::add_time_commands() {
   });
   router_.add_command("pause", [this](const Router::Call& call) {
     running_ = false;
+    if (debugger_) cost_.begin(*debugger_);
     halted_ = true;
     return reply_and_tell(call);
   });
@@ -247,6 +248,9 @@ void PlantHost::finish(const debug::Stop& stop) {
   if (stands_there) {
     running_ = false;
     stopped_ = {{"reason", reason_text(stop.reason)}, {"text", stop.text}};
+    cost_.stopped(*debugger_);
+    if (const uint64_t commands = cost_.commands(); commands != 0)
+      stopped_["cost"] = {{"us", cost_.time() / runtime::kMicrosecond}, {"commands", commands}};
     if (stop.task.task != 0) {
       const auto frames = debugger_->frames(stop.task);
       stopped_["station"] = plant_->stations()[stop.task.station]->config().name;
@@ -260,6 +264,7 @@ void PlantHost::finish(const debug::Stop& stop) {
              frames.front().function);
     }
   }
+  if (!stands_there && (!running_ || done.kind == MotionKind::Go)) cost_.begin(*debugger_);
   if (std::exchange(elsewhere_, false) || done.kind == MotionKind::Go) new_generation();
   if (done.kind != MotionKind::Run) router_.reply(done.client, done.id, {{"us", us()}});
   if (!running_ || done.kind != MotionKind::Run) tell_time();
@@ -417,7 +422,7 @@ Json PlantHost::save() {
   for (const auto& tab : tabs_) tabs.push_back(tab->save());
   return {{"router", router_.save()}, {"tabs", std::move(tabs)},   {"running", running_},
           {"speed", speed_},      {"generation", generation_}, {"now", now_},
-          {"next", next_},
+          {"next", next_},        {"cost", cost_.save()},
           {"offered", offered_ ? Json(*offered_) : Json(nullptr)}};
 }
 
@@ -427,6 +432,7 @@ void PlantHost::load(const Json& state) {
   generation_ = state["generation"];
   now_ = state["now"];
   next_ = state["next"];
+  cost_.load(state["cost"]);
   stopped_ = nullptr;
   build_.reset();
   offered_.reset();

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/debugger/cost.hpp"
 #include "tools/debugger/debugger.hpp"
 #include "tools/serve/host/copies.hpp"
 #include "tools/serve/host/outside.hpp"
@@ -182,6 +183,7 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
   bool halted_ = false;         // somebody wants it to stand before the next millisecond
   bool telegram_seen_ = false;  // since the motion began
   Json stopped_ = nullptr;
+  debug::Cost cost_;  // since the plant stood before
   uint32_t generation_ = 1;
   bool elsewhere_ = false;  // another moment, which those before do not lead to
   Motion now_;   // under way

@@ -34,6 +34,7 @@ void PlantHost::restart() {
     }
     for (const auto& tab : tabs_) tab->restarted();
     debugger_->restart(std::move(next));
+    cost_.begin(*debugger_);
   } catch (const std::runtime_error& mistake) {  // the old plant goes on
     texts_ = before;
     const Motion failed = std::exchange(now_, {});

@@ -35,6 +35,7 @@ export interface Stopped {
   task?: number;
   file?: string;
   line?: number;
+  cost?: { us: number; commands: number }; // since the plant stood before
 }
 
 export interface Time {

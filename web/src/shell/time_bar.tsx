@@ -56,11 +56,14 @@ function Clock() {
   const now = time.value;
   const stopped = now.stopped;
   const where = stopped?.file ? ` ${stopped.file.slice(stopped.file.lastIndexOf("/") + 1)}:${stopped.line}` : "";
+  const cost = stopped?.cost;
+  const told = cost ? `${cost.us / 1000} ms and ${cost.commands} commands since the plant stood before` : undefined;
+  const count = cost ? ` · ${cost.commands} cmd` : "";
   return (
     <div class="clock">
       <span class={`lamp${now.running ? " on" : ""}`} />
-      <span class="pace">
-        {now.running ? `× ${now.rate.toFixed(2)}` : stopped ? `${stopped.reason}${where}` : now.over ? "ended" : "paused"}
+      <span class="pace" title={told}>
+        {now.running ? `× ${now.rate.toFixed(2)}` : stopped ? `${stopped.reason}${where}${count}` : now.over ? "ended" : "paused"}
       </span>
       <span role="timer" aria-label="Time">
         {secondsText(now.us)}
