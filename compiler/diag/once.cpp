@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <set>
 #include <tuple>
 
 namespace ipos::compiler {
@@ -20,40 +21,46 @@ Spelled spelled(const Diagnostic& diagnostic, const SourceMap& map) {
           place.column};
 }
 
-struct Repeats {
-  size_t first = 0;    // in what is told
-  size_t more = 0;
-  Span second{};       // where it is used again in another place; none: everywhere in the same one
-};
+using Place = std::tuple<std::string_view, uint32_t, uint32_t>;
 
-bool is_elsewhere(Span span, Span other, const SourceMap& map) {
-  const Position a = map.position(span.begin), b = map.position(other.begin);
-  return a.file != b.file || a.line != b.line || a.column != b.column;
+Place place_of(const Diagnostic& diagnostic, const SourceMap& map) {
+  const Position at = map.position(diagnostic.span.begin);
+  return {at.file == nullptr ? std::string_view() : std::string_view(at.file->name), at.line, at.column};
 }
 
 }  // namespace
 
-std::vector<Diagnostic> each_once(std::span<const Diagnostic> all, const SourceMap& map) {
-  std::vector<Diagnostic> told;
-  std::map<Spelled, Repeats> known;
-  for (const Diagnostic& one : all) {
-    const auto [entry, is_new] = known.try_emplace(spelled(one, map), Repeats{told.size(), 0, {}});
+std::vector<Repeats> repeats_of(std::span<const Diagnostic> all, const SourceMap& map) {
+  std::vector<Repeats> groups;
+  std::map<Spelled, size_t> known;
+  std::map<size_t, std::set<Place>> places;  // of those that came again
+  for (size_t n = 0; n < all.size(); ++n) {
+    const auto [entry, is_new] = known.try_emplace(spelled(all[n], map), groups.size());
     if (is_new) {
-      told.push_back(one);
+      groups.push_back({n});
       continue;
     }
-    Repeats& repeats = entry->second;
-    ++repeats.more;
-    const bool in_macro = one.span.begin.in_macro();
-    if (in_macro && !repeats.second.begin.valid() && is_elsewhere(one.span, told[repeats.first].span, map)) repeats.second = one.span;
+    Repeats& group = groups[entry->second];
+    std::set<Place>& seen = places[entry->second];
+    if (group.more++ == 0) seen.insert(place_of(all[group.first], map));
+    if (all[n].span.begin.in_macro() && seen.insert(place_of(all[n], map)).second) group.elsewhere.push_back(n);
   }
-  for (const auto& [place, repeats] : known)
-    if (repeats.more != 0)
-      told[repeats.first].notes.push_back(
-          {repeats.second.begin.valid() ? Span{repeats.second.begin, repeats.second.begin} : Span{},
-           repeats.second.begin.valid()
-               ? fmt::format("the same in {} more use{} of the macro, the next one here", repeats.more, repeats.more == 1 ? "" : "s")
-               : fmt::format("the same {} more time{} in this place", repeats.more, repeats.more == 1 ? "" : "s")});
+  return groups;
+}
+
+std::vector<Diagnostic> each_once(std::span<const Diagnostic> all, const SourceMap& map) {
+  std::vector<Diagnostic> told;
+  for (const Repeats& group : repeats_of(all, map)) {
+    told.push_back(all[group.first]);
+    if (group.more == 0) continue;
+    const char* const many = group.more == 1 ? "" : "s";
+    if (group.elsewhere.empty()) {
+      told.back().notes.push_back({Span{}, fmt::format("the same {} more time{} in this place", group.more, many)});
+    } else {
+      const Location next = all[group.elsewhere.front()].span.begin;
+      told.back().notes.push_back({{next, next}, fmt::format("the same in {} more use{} of the macro, the next one here", group.more, many)});
+    }
+  }
   return told;
 }
 

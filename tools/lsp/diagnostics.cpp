@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <map>
 
+#include "compiler/diag/once.hpp"
 #include "compiler/diag/places.hpp"
 #include "compiler/format/format.hpp"
 #include "tools/lsp/features.hpp"
@@ -90,6 +91,33 @@ Json message(const Diagnostic& diagnostic, const Program& program, Ranges& range
   return out;
 }
 
+constexpr size_t kMostUses = 20;  // of a macro that a message lists
+constexpr int kHint = 4;          // a mark in the text, no row in a list of problems
+
+Json related(const compiler::Range& place, Ranges& ranges, const std::string& text) {
+  return {{"location", {{"uri", uri_of(clean(*place.begin.file))}, {"range", ranges.of(place)}}}, {"message", text}};
+}
+
+// What is mended in one place is one message. Of a macro it stands at the first use and leads to the others, which are marked;
+// what came again in the same place (a header that is included twice) is not there at all.
+void add_uses(const compiler::Repeats& same, const Program& program, Ranges& ranges, Json& first, std::vector<Json>& marks) {
+  const compiler::SourceMap& map = *program.compiled.sources;
+  const auto& all = program.compiled.diagnostics.all();
+  const auto range = [&](size_t n) { return compiler::range_of(all[n].span, map); };
+  const compiler::Range here = range(same.first);
+  for (size_t n = 0; n < same.elsewhere.size(); ++n) {
+    const compiler::Range use = range(same.elsewhere[n]);
+    if (use.begin.file == nullptr) continue;
+    if (n < kMostUses) first["relatedInformation"].push_back(related(use, ranges, "the same in this use of the macro"));
+    Json mark = message(all[same.elsewhere[n]], program, ranges);
+    mark["severity"] = kHint;
+    mark["relatedInformation"] = Json::array();
+    if (here.begin.file != nullptr)
+      mark["relatedInformation"].push_back(related(here, ranges, "told here for all uses of the macro"));
+    marks.push_back(std::move(mark));
+  }
+}
+
 }  // namespace
 
 std::map<std::string, Json> diagnostics_of(const Workspace& workspace, const Program& program) {
@@ -97,13 +125,21 @@ std::map<std::string, Json> diagnostics_of(const Workspace& workspace, const Pro
   for (const std::string& file : program.files) out.emplace(file, Json::array());
   const bool header = !is_program(program.path);
   Ranges ranges(workspace.encoding);
-  for (const Diagnostic& diagnostic : program.compiled.diagnostics.all()) {
+  const auto& diagnostics = program.compiled.diagnostics.all();
+  for (const compiler::Repeats& same : compiler::repeats_of(diagnostics, *program.compiled.sources)) {
+    const Diagnostic& diagnostic = diagnostics[same.first];
     // A header on its own has no main() and uses nothing of what it declares.
     if (header && (diagnostic.severity != Severity::Error || diagnostic.diag == compiler::Diag::NoMain))
       continue;
-    const compiler::Position at = program.compiled.sources->position(diagnostic.span.begin);
-    const std::string path = at.file == nullptr || at.file->path.empty() ? program.path : clean(*at.file);
-    out[path].push_back(message(diagnostic, program, ranges));
+    const auto path_of_message = [&](size_t n) {
+      const compiler::Position at = program.compiled.sources->position(diagnostics[n].span.begin);
+      return at.file == nullptr || at.file->path.empty() ? program.path : clean(*at.file);
+    };
+    Json first = message(diagnostic, program, ranges);
+    std::vector<Json> marks;
+    add_uses(same, program, ranges, first, marks);
+    out[path_of_message(same.first)].push_back(std::move(first));
+    for (size_t n = 0; n < marks.size(); ++n) out[path_of_message(same.elsewhere[n])].push_back(std::move(marks[n]));
   }
   return out;
 }
