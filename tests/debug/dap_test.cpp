@@ -380,6 +380,19 @@ TEST_F(DapOfAPlant, AFrameStopsThePlantAtItsHitsAndWhereItsConditionHolds) {
   EXPECT_NE(last_stop()["text"].get<std::string>().find("lNobody"), std::string::npos) << last_stop();
 }
 
+// Nobody receives what the program sends: told once, behind the response to launch or before it, at the line of the command.
+TEST_F(DapOfAPlant, WhatTheProgramsOfAPlantSayTogetherIsTold) {
+  launch();
+  std::vector<Json> told;
+  for (const Json& message : sent_)
+    if (message.value("event", "") == "output" && message["body"]["output"].get<std::string>().find("[B28]") != std::string::npos)
+      told.push_back(message["body"]);
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told[0]["line"], 12) << told[0];
+  EXPECT_EQ(told[0]["source"]["name"], "P1.IPC");
+  EXPECT_EQ(told[0]["output"].get<std::string>().find("P1.IPC:12:3: warning: nobody on sbus receives object 40Ah (1034), which unit1 sends here"), 0U) << told[0];
+}
+
 TEST_F(Dap, SourcesOfAllProgramsAreListed) {
   launch();
   const Json sources = ask("loadedSources")["body"]["sources"];

@@ -46,6 +46,85 @@ TEST(LspDiagnostics, AllOfTheProgramAndItsHeaders) {
   EXPECT_EQ(client.codes("/p/h.h").size(), 1U) << "the disk counts again";
 }
 
+// What is mended in one place is one problem: a macro stands at its first use and leads to the others, which are marked.
+TEST(LspDiagnostics, AMacroIsToldOnceAndMarkedAtItsOtherUses) {
+  Client client;
+  client.open(kPath, "#define BIG (100000 * 65536)\nlong a;\nmain() {\n  a = BIG;\n  H1 = a;\n  a = BIG;\n  H2 = a;\n  a = BIG;\n  H3 = a; }\n");
+  const Json& all = client.diagnostics["file://" + kPath];
+  ASSERT_EQ(all.size(), 3U) << all;
+  const auto line = [&](size_t n) { return all[n]["range"]["start"]["line"].get<int>(); };
+  EXPECT_EQ(line(0), 3);
+  EXPECT_EQ(all[0]["severity"], 2);
+  std::vector<int> uses;
+  for (const Json& one : all[0]["relatedInformation"])
+    if (one["message"] == "the same in this use of the macro") uses.push_back(one["location"]["range"]["start"]["line"]);
+  EXPECT_EQ(uses, (std::vector<int>{5, 7}));
+  for (const size_t n : {1U, 2U}) {
+    EXPECT_EQ(line(n), n == 1 ? 5 : 7);
+    EXPECT_EQ(all[n]["severity"], 4) << "a hint: no row in the list of problems";
+    EXPECT_EQ(all[n]["message"], all[0]["message"]);
+    ASSERT_EQ(all[n]["relatedInformation"].size(), 1U);
+    EXPECT_EQ(all[n]["relatedInformation"][0]["location"]["range"]["start"]["line"], 3);
+  }
+}
+
+TEST(LspDiagnostics, AHeaderThatIsIncludedTwiceIsToldOnce) {
+  Client client(std::map<std::string, std::string>{{"/p/h.h", "/* one /* two */\n"}});
+  client.open(kPath, "#include \"h.h\"\n#include \"h.h\"\nmain() { H1 = 1; }\n");
+  EXPECT_EQ(client.codes("/p/h.h").size(), 1U) << client.diagnostics["file:///p/h.h"];
+}
+
+TEST(LspDiagnostics, WhatIsWrittenTwiceIsToldTwice) {
+  Client client;
+  client.open(kPath, "long a;\nmain() {\n  a = 100000 * 65536; H1 = a;\n  a = 100000 * 65536; H1 = a; }\n");
+  for (const Json& one : client.diagnostics["file://" + kPath]) EXPECT_EQ(one["severity"], 2);
+  EXPECT_EQ(client.codes(kPath).size(), 2U);
+}
+
+// Two programs of a plant that do not meet: at the command of each, with the text of `ipos run`. A line more above it, and the
+// message moves with its line; a text that is saved is looked at anew.
+TEST(LspDiagnostics, ObjectsThatNobodyReceivesAreToldAcrossThePlant) {
+  const std::string sender =
+      "#include <const.h>\nSCTRCYCL Tr; long lData, lMore;\nmain()\n{\n  Tr.ObjectNo = 1100; Tr.CycleTime = 10; Tr.Format = 8; Tr.DPointer = "
+      "numof(lData);\n  _SBusCommDef(SCD_TRCYCL, Tr);\n  _SBusCommOn();\n  while (1) lData = lMore++;\n}\n";
+  const std::string receiver =
+      "#include <const.h>\nSCREC Re; long lData, lMore;\nmain()\n{\n  Re.ObjectNo = 1101; Re.Format = 8; Re.DPointer = "
+      "numof(lData);\n  _SBusCommDef(SCD_REC, Re);\n  _SBusCommOn();\n  while (1) H0 = lData + lMore;\n}\n";
+  const std::string plant =
+      "[[bus]]\nname = \"sbus\"\nkind = \"can\"\n[[station]]\nname = \"leader\"\nunit = \"mdxb\"\nprogram = \"A.IPC\"\nsbus = "
+      "\"sbus\"\n[station.parameters]\nP881 = 1\n[[station]]\nname = \"follower\"\nunit = \"mdxb\"\nprogram = \"B.IPC\"\nsbus = "
+      "\"sbus\"\n[station.parameters]\nP881 = 2\n";
+  Client client(std::map<std::string, std::string>{{"/p/B.IPC", receiver}});
+  client.open("/p/p.toml", plant);
+  client.open(kPath, sender);
+  const auto found = [&](const std::string& path) {
+    Json one;
+    for (const Json& message : client.diagnostics["file://" + path])
+      if (message["code"].get<std::string>().starts_with("B")) one = message;
+    return one;
+  };
+  const Json sent = found(kPath), taken = found("/p/B.IPC");
+  ASSERT_FALSE(sent.is_null());
+  ASSERT_FALSE(taken.is_null());
+  EXPECT_EQ(sent["code"], "B28");
+  EXPECT_EQ(sent["message"], "nobody on sbus receives object 44Ch (1100), which leader sends here; follower expects 44Dh (1101)");
+  EXPECT_EQ(sent["range"]["start"], (Json{{"line", 5}, {"character", 2}}));
+  EXPECT_EQ(sent["relatedInformation"][0]["location"]["uri"], "file:///p/p.toml");
+  EXPECT_EQ(taken["code"], "B29");
+
+  const auto change = [&](const std::string& text) {
+    client.notify("textDocument/didChange", {{"textDocument", {{"uri", "file://" + kPath}}}, {"contentChanges", {{{"text", text}}}}});
+  };
+  change("\n\n" + sender);
+  EXPECT_EQ(found(kPath)["range"]["start"]["line"], 7);
+  std::string mended = sender;
+  mended.replace(mended.find("1100"), 4, "1101");
+  change(mended);
+  client.notify("textDocument/didSave", Client::document(kPath));
+  EXPECT_TRUE(found(kPath).is_null()) << found(kPath);
+  EXPECT_TRUE(found("/p/B.IPC").is_null()) << found("/p/B.IPC");
+}
+
 // 1-based places, as the tests of a program keep them; the ü is one unit of UTF-16 and two bytes.
 TEST(LspDiagnostics, WhatNoTestNoticesIsInformation) {
   const std::string text = "long a;\nmain() { a = 5;/*\u00fc*/ a = 66; }\n";

@@ -76,6 +76,29 @@ TEST(PlantObjects, AreHintsOfThePlan) {
       << result.err;
 }
 
+// Once, however many tests have the plant; and at the begin of a session of the debugger.
+TEST(PlantObjects, AreToldByTestsAndTheDebugger) {
+  const TemporaryFolder folder;
+  folder.write("p.toml", kBus + station("leader", "A.IPC", 1) + station("follower", "B.IPC", 2));
+  folder.write("A.IPC", sender("1100"));
+  folder.write("B.IPC", receiver("1101"));
+  folder.write("a.test.toml", "plant = \"p.toml\"\n[[expect]]\nat = \"10ms\"\nstation = \"leader\"\nvariable = \"H5\"\nequals = 0\n");
+  folder.write("b.test.toml", "plant = \"p.toml\"\n[[expect]]\nat = \"10ms\"\nstation = \"leader\"\nvariable = \"H6\"\nequals = 0\n");
+  const std::string a = "A.IPC:6:3: warning: nobody on sbus receives object 44Ch (1100), which leader sends here; follower expects 44Dh (1101) [B28]\n";
+  const std::string b = "B.IPC:6:3: warning: nobody on sbus sends object 44Dh (1101), which follower expects here; leader sends 44Ch (1100) [B29]\n";
+  const auto count = [](const std::string& text, const std::string& part) {
+    size_t n = 0;
+    for (size_t at = 0; (at = text.find(part, at)) != std::string::npos; ++at) ++n;
+    return n;
+  };
+  const CommandResult tests = run_ipos({"test", "."}, folder.path());
+  EXPECT_EQ(tests.exit_code, 0) << tests.out << tests.err;
+  for (const std::string& text : {a, b}) EXPECT_EQ(count(tests.err, text.substr(text.find("warning"))), 1U) << tests.err;
+  const CommandResult session = run_ipos({"debug", "p.toml"}, folder.path());
+  EXPECT_EQ(session.err, a + b);
+  EXPECT_EQ(run_ipos({"debug", "a.test.toml"}, folder.path()).err, a + b);
+}
+
 TEST(PlantObjects, OfTheExamplesHaveTheirPartners) {
   for (const char* plant : {"scom/scom.toml", "scom-intel/scom-intel.toml", "sbus-line/line.toml", "campaign/campaign.toml",
                             "canopen/canopen.toml", "movitrac-b/movitrac-b.toml", "isync/isync.toml"}) {

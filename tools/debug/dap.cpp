@@ -9,6 +9,7 @@
 #include "compiler/diag/places.hpp"
 #include "runtime/signals/find.hpp"
 #include "tools/cli/failure.hpp"
+#include "tools/input/plant_objects.hpp"
 #include "tools/lsp_base/transport.hpp"
 
 namespace ipos::tools::debug {
@@ -332,6 +333,15 @@ Json DapServer::launch(const Json& arguments) {
   stop_on_entry_ = arguments.value("stopOnEntry", true);
   debugger_.emplace(make_(launch), *this, std::move(snapshots_), runtime::kNever);
   cost_.begin(*debugger_);
+  for (const ObjectFinding& one : object_findings(debugger_->plant())) {
+    Json body{{"category", "stderr"}, {"output", text_of(one) + "\n"}};
+    if (!one.place.file.empty()) {
+      body["source"] = source_for_client(one.place.file);
+      body["line"] = line_for_client(one.place.line);
+      body["column"] = column_for_client(one.place.column);
+    }
+    event("output", std::move(body));
+  }
   return Json::object();
 }
 

@@ -21,6 +21,7 @@
 #include "tools/debug/onlookers.hpp"
 #include "tools/input/folder_plant.hpp"
 #include "tools/input/plant_input.hpp"
+#include "tools/input/plant_objects.hpp"
 #include "tools/input/plant_source.hpp"
 #include "tools/input/program.hpp"
 #include "tools/lsp_base/transport.hpp"
@@ -98,6 +99,7 @@ int debug_console(const DebugFlags& flags) {
   console.load_input = [&](const debug::Json& state) { lines.set_rest(state.get<std::string>()); };
   console.not_interrupted = [] { return !interrupted(); };
   debug::Debugger debugger(std::move(what), console, snapshots_of(flags), runtime::parse_duration(flags.duration));
+  tell_objects(debugger.plant());
   console.attach(debugger);
   catch_ctrl_c();
   lines.complete_with([&console](std::string_view line) { return console.complete(line); });

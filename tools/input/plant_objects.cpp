@@ -181,16 +181,18 @@ std::vector<ObjectFinding> object_findings(const runtime::Plant& plant) {
   return findings;
 }
 
+std::string text_of(const ObjectFinding& one) {
+  const Told& place = one.place;
+  if (place.file.empty()) return fmt::format("ipos: warning: {} [{}]", place.text, place.code);
+  return fmt::format("{}:{}:{}: warning: {} [{}]", compiler::printable(place.file), place.line, place.column, place.text, place.code);
+}
+
 void tell_objects(const runtime::Plant& plant, BuildRecord* record) {
-  for (const ObjectFinding& one : object_findings(plant)) {
+  for (const ObjectFinding& one : object_findings(plant))
     if (record != nullptr)
       record->tell(one.place);
-    else if (one.place.file.empty())
-      fmt::print(stderr, "ipos: warning: {} [{}]\n", one.place.text, one.place.code);
     else
-      fmt::print(stderr, "{}:{}:{}: warning: {} [{}]\n", compiler::printable(one.place.file), one.place.line, one.place.column,
-                 one.place.text, one.place.code);
-  }
+      fmt::print(stderr, "{}\n", text_of(one));
 }
 
 }  // namespace ipos::tools

@@ -196,14 +196,17 @@ void Server::notification(const std::string& method, const Json& params) {
   } else if (method.starts_with("textDocument/did")) {
     document(method, params);
     outdated_ = true;
+    if (method != "textDocument/didChange") objects_.outdate();
   } else if (method == "workspace/didChangeWatchedFiles") {
     for (const Json& change : member(params, "changes"))
       if (const std::string uri = string_or(change, "uri"); !uri.empty()) workspace_.touched(path_of(uri));
     outdated_ = true;
+    objects_.outdate();
   } else if (method == "workspace/didChangeConfiguration") {
     const Json settings = member(member(params, "settings"), "ipos");
     if (settings.is_object()) workspace_.set_options(settings);
     outdated_ = true;
+    objects_.outdate();
   }
 }
 
@@ -242,6 +245,10 @@ void Server::publish() {
       for (Json& one : messages)
         if (programs.size() == 1 || told[path].insert(one.dump()).second) target.push_back(std::move(one));
     }
+  }
+  for (auto& [path, messages] : objects_.diagnostics(workspace_)) {
+    Json& target = all.try_emplace(path, Json::array()).first->second;
+    for (Json& one : messages) target.push_back(std::move(one));
   }
   survivors_.clear();
   for (auto& [path, messages] : all) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <set>
 
+#include "tools/lsp/plant_objects.hpp"
 #include "tools/lsp/workspace.hpp"
 #include "tools/survivors/survivors.hpp"
 
@@ -51,6 +52,7 @@ class Server {
   std::function<void(const Json&)> send_;
   ReadSurvivors read_survivors_;
   std::map<std::string, std::vector<Survivor>> survivors_;  // shown, by path
+  PlantObjects objects_;
   std::deque<Json> queue_;
   std::map<std::string, std::string> spellings_;  // of open documents: ours, and that of the editor where it differs
   std::set<std::string> published_;  // paths with messages shown

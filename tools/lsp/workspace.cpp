@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "runtime/signals/find.hpp"
+#include "runtime/unit/program_image.hpp"
 #include "stdlib/unit_names.hpp"
 #include "tools/lsp/plant_document.hpp"
 
@@ -159,6 +160,19 @@ Program Workspace::compile(const std::string& path, const std::map<std::string, 
   for (const auto& file : program.index.sources->files())
     if (!file->path.empty()) program.files.insert(tidy(file->path));
   return program;
+}
+
+std::optional<vm::Image> Workspace::image(const std::string& path, const stdlib::UnitType* unit) const {
+  const auto source = text(path);
+  if (!source) return std::nullopt;
+  if (!is_program(path)) {
+    auto read = runtime::read_program_image({reinterpret_cast<const uint8_t*>(source->data()), source->size()});
+    return read ? std::optional(*std::move(read)) : std::nullopt;
+  }
+  compiler::CompileOptions options = options_;
+  if (unit != nullptr) options.unit = unit;
+  options.read_file = [this](const std::string& wanted) { return text(tidy(wanted)); };
+  return compiler::compile(path, path, *source, options).image;
 }
 
 const Program& Workspace::cached(const std::string& path) {

@@ -55,6 +55,9 @@ class Workspace {
   // With other texts in place of some files, not kept.
   Program compile(const std::string& path, const std::map<std::string, std::string>& texts = {}) const;
 
+  // Of a source as a unit executes it, or of an image on disk; nothing where it cannot be used.
+  std::optional<vm::Image> image(const std::string& path, const stdlib::UnitType* unit) const;
+
   Encoding encoding = Encoding::Utf16;
 
  private:

@@ -143,6 +143,7 @@ std::vector<TestResult> run_tests(const std::vector<TestCase>& tests, const Test
       fmt::print(stderr, "{} of {}, {} not passed", done, tests.size() * options.repeat, bad);
   };
   show(0);
+  Notes notes;
   const std::vector<TestResult> results =
       run_suite(tests, options, [&](const TestResult& result, size_t done, size_t) {
         if (progress) fmt::print(stderr, "\r\033[K");
@@ -151,7 +152,8 @@ std::vector<TestResult> run_tests(const std::vector<TestCase>& tests, const Test
         std::fflush(stdout);
         bad += result.outcome == Outcome::Passed ? 0U : 1U;
         show(done);
-      });
+      }, &notes);
+  for (const std::string& note : notes) fmt::print(stderr, "{}\n", note);
   if (!alone && flags.durations != 0) fmt::print("{}", durations(results, flags.durations));
   if (!alone) fmt::print("{}", summary(results, colours));
   return results;

@@ -86,6 +86,7 @@ BuiltPlant build_plant(const TestCase& test, Programs& programs, const RunOption
   auto plant = std::make_unique<runtime::Plant>(std::move(file), std::move(images), rates, errors, programs.execution());
   built.messages += mistakes_text(test.plant_path, errors, false);
   if (errors.empty()) built.plant = std::move(plant);
+  if (built.plant) programs.look_at_objects(test.plant_path, *built.plant);
   return built;
 }
 

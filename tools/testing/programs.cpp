@@ -10,6 +10,7 @@
 #include "compiler/diag/render.hpp"
 #include "runtime/unit/program_image.hpp"
 #include "tools/cli/files.hpp"
+#include "tools/input/plant_objects.hpp"
 #include "tools/input/program.hpp"
 
 namespace ipos::tools::testing {
@@ -34,6 +35,27 @@ std::shared_ptr<const Program> Programs::load(const std::string& path, const std
   auto& known = known_[{path, unit}];
   if (!known) known = std::make_shared<const Program>(make({path, unit}));
   return known;
+}
+
+void Programs::look_at_objects(const std::string& plant_path, const runtime::Plant& plant) {
+  if (!wants_objects_) return;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!objects_.try_emplace(plant_path).second) return;
+  }
+  std::vector<std::string> texts;
+  for (const ObjectFinding& one : object_findings(plant)) texts.push_back(text_of(one));
+  const std::lock_guard lock(mutex_);
+  objects_[plant_path] = std::move(texts);
+}
+
+std::vector<std::string> Programs::told_objects() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::string> all;
+  for (const auto& [plant, texts] : objects_)
+    for (const std::string& text : texts)
+      if (std::find(all.begin(), all.end(), text) == all.end()) all.push_back(text);
+  return all;
 }
 
 compiler::Compilation compile_for_test(const ProgramName& name, std::string text, const CompileFlags& flags) {

@@ -36,6 +36,10 @@ class Programs {
   explicit Programs(CompileFlags flags, KnownPrograms known = {}) : flags_(std::move(flags)), known_(std::move(known)) {}
 
   std::shared_ptr<const Program> load(const std::string& path, const stdlib::UnitType* unit);
+  // What the programs of a plant say together, for who wants it at the end: looked for once for each file of a plant.
+  void want_objects() { wants_objects_ = true; }
+  void look_at_objects(const std::string& plant_path, const runtime::Plant& plant);
+  std::vector<std::string> told_objects() const;  // each once, in the order of the files
   bool allow_fmu() const { return flags_.allow_fmu; }
   // How the plants of tests are executed; what is made of a program they share.
   const runtime::Execution& execution() const { return execution_; }
@@ -47,7 +51,9 @@ class Programs {
 
   CompileFlags flags_;
   runtime::Execution execution_{.shelf = std::make_shared<runtime::ProgramShelf>()};
-  std::mutex mutex_;
+  bool wants_objects_ = false;
+  mutable std::mutex mutex_;
+  std::map<std::string, std::vector<std::string>> objects_;  // by the file of the plant
   KnownPrograms known_;
 };
 

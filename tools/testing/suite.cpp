@@ -20,7 +20,9 @@ class Suite {
         options_(options),
         on_result_(on_result),
         programs_(options.compile),
-        results_(tests.size() * options.repeat) {}
+        results_(tests.size() * options.repeat) {
+    programs_.want_objects();
+  }
 
   std::vector<TestResult> run() {
     share_work(results_.size(), options_.jobs, [this](size_t n) { take(n); });
@@ -28,6 +30,8 @@ class Suite {
     for (std::optional<TestResult>& result : results_) results.push_back(std::move(*result));
     return results;
   }
+
+  Notes notes() const { return programs_.told_objects(); }
 
  private:
   void take(size_t n) {
@@ -71,8 +75,11 @@ class Suite {
 }  // namespace
 
 std::vector<TestResult> run_suite(const std::vector<TestCase>& tests, const SuiteOptions& options,
-                                  const ResultListener& on_result) {
-  return Suite(tests, options, on_result).run();
+                                  const ResultListener& on_result, Notes* notes) {
+  Suite suite(tests, options, on_result);
+  std::vector<TestResult> results = suite.run();
+  if (notes != nullptr) *notes = suite.notes();
+  return results;
 }
 
 }  // namespace ipos::tools::testing

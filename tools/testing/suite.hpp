@@ -18,9 +18,12 @@ struct SuiteOptions {
 };
 
 // Called in the order of the tests, from one thread at a time.
+// What there is to say beside the results, at their end.
+using Notes = std::vector<std::string>;
+
 using ResultListener = std::function<void(const TestResult& result, size_t done, size_t total)>;
 
 std::vector<TestResult> run_suite(const std::vector<TestCase>& tests, const SuiteOptions& options,
-                                  const ResultListener& on_result = {});
+                                  const ResultListener& on_result = {}, Notes* notes = nullptr);
 
 }  // namespace ipos::tools::testing
