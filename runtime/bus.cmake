@@ -46,8 +46,7 @@ bus_layer(profibus
 # Telegrams of all lines as words, as logs, and as a DBC file.
 bus_layer(words SOURCES can_words.cpp dp_words.cpp bus_words.cpp USES bus_can bus_movilink bus_canopen bus_profibus)
 bus_layer(log
-  SOURCES candump.cpp bus_load.cpp replay.cpp serial_log.cpp profibus_log.cpp
-  HOT read_serial_log.cpp  # alone: its names are those of candump.cpp
+  SOURCES candump.cpp read_serial_log.cpp bus_load.cpp replay.cpp serial_log.cpp profibus_log.cpp
   USES bus_can bus_rs485 bus_movilink bus_profibus clock)
 bus_layer(dbc SOURCES dbc.cpp USES bus_words bus_log bus_canopen bus_movilink bus_can stdlib)
 ipos_layer(bus USES bus_line bus_can bus_rs485 bus_movilink bus_canopen bus_profibus_fms bus_profibus bus_words bus_log
