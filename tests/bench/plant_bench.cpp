@@ -3,12 +3,14 @@
 // `ipos run` does it. Counts frames, commands and the memory taken from the heap once everything runs.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -230,16 +232,56 @@ void measure(const Kind& kind, int drives, bool bus, int seconds, const std::str
   std::fflush(stdout);
 }
 
+// How long one thread after the other would be busy if each took the next line that nobody has begun, as runtime/plant/crew does, and
+// all waited for the last one.
+double time_of_turn(const std::vector<double>& lines, size_t threads) {
+  std::vector<double> busy(threads);
+  for (const double line : lines) *std::min_element(busy.begin(), busy.end()) += line;
+  return *std::max_element(busy.begin(), busy.end());
+}
+
+// What more cores could give at most: each line of `drives` is a plant that runs a turn of `ipos run` before the next one does, and the
+// measured times are dealt out. What cores take from each other, caches and memory, is not in it.
+void simulate_schedule(const Kind& kind, int drives, size_t lines, int seconds) {
+  constexpr runtime::Time kTurn = 200 * runtime::kMillisecond;  // kStretchApart of tools/run
+  constexpr double kWake = 10e-6;                               // s, as runtime/plant/islands has it
+  std::vector<std::unique_ptr<runtime::Plant>> plants;
+  for (size_t n = 0; n < lines; ++n) {
+    plants.push_back(make(kind, drives, true, tools::execution_of("")));
+    plants.back()->run_until(runtime::kSecond);
+  }
+  constexpr size_t kThreads[] = {1, 2, 4, 8, 16, 32, 64};
+  std::map<size_t, double> sums;
+  for (runtime::Time end = runtime::kSecond + kTurn; end <= (1 + seconds) * runtime::kSecond; end += kTurn) {
+    std::vector<double> times;
+    for (const auto& plant : plants) {
+      const double begin = cpu_seconds();
+      plant->run_until(end);
+      times.push_back(cpu_seconds() - begin);
+    }
+    for (const size_t threads : kThreads) sums[threads] += time_of_turn(times, threads) + (threads > 1 ? kWake : 0);
+  }
+  for (const auto& [threads, sum] : sums)
+    fmt::print("{:7}{} lines of {} drives, {:2} threads: {:6.2f} times as fast as one\n", kind.name, lines, drives, threads,
+               sums[1] / sum);
+}
+
 }  // namespace
 }  // namespace ipos
 
 // ipos_bench_plant [SECONDS [DRIVES busy|travel|idle [ENGINE|in-turn]]]
 // ipos_bench_plant write FOLDER     the plants of 64 drives as files, a folder each
+// ipos_bench_plant schedule SECONDS DRIVES LINES     so many lines with so many drives each, dealt out to up to 64 threads
 int main(int argc, char** argv) {
   using ipos::kKinds;
   if (argc == 3 && std::string_view(argv[1]) == "write") {
     for (const ipos::Kind& kind : kKinds)
       ipos::write(std::filesystem::path(argv[2]) / kind.name, ipos::project_of(kind, 64, true));
+    return 0;
+  }
+  if (argc == 5 && std::string_view(argv[1]) == "schedule") {
+    for (const ipos::Kind& kind : kKinds)
+      ipos::simulate_schedule(kind, std::atoi(argv[3]), static_cast<size_t>(std::atoi(argv[4])), std::atoi(argv[2]));
     return 0;
   }
   const int seconds = argc > 1 ? std::atoi(argv[1]) : 10;

@@ -1,5 +1,6 @@
-// What processor time the programs of tests/bench and the plants of 64 drives take in WebAssembly and natively: the same command
-// line in turn, the best of several rounds each, WebAssembly with what the engine compiles meanwhile. Prints a table.
+// What the programs of tests/bench and the plants of 64 drives take in WebAssembly and natively, as time of processors and on the
+// clock: the same command line in turn, the best of several rounds each. The engine of JavaScript compiles hot functions once more
+// on another processor, which the first of the two times has in it. Prints a table.
 //   node speed.mjs IPOS WASM_FOLDER PROJECT PLANTS [ROUNDS]      PLANTS is of `ipos_bench_plant write`
 import { spawnSync } from "node:child_process";
 import { readFileSync, readdirSync } from "node:fs";
@@ -36,33 +37,40 @@ const cases = [
 
 async function inWasm({ folder }, files, words) {
   const began = process.cpuUsage();
+  const since = performance.now();
   const { code, err } = await globalThis.runVerb(ipos, wasm, { folder, files, words });
+  const clock = performance.now() - since;
   if (code !== 0) throw new Error(`${words.join(" ")}: ${err}`);
   const { user, system } = process.cpuUsage(began);
-  return (user + system) / 1000;
+  return { cpu: (user + system) / 1000, clock };
 }
 
 function natively({ folder }, words) {
-  const timed = ["-c", 'TIMEFORMAT="%U %S"; time "$@"', "bash", program, ...words];
+  const timed = ["-c", 'TIMEFORMAT="%U %S %R"; time "$@"', "bash", program, ...words];
   const { status, stderr } = spawnSync("bash", timed, { cwd: folder, encoding: "utf8" });
   if (status !== 0) throw new Error(`${words.join(" ")}: ${stderr}`);
-  const [user, system] = stderr.trim().split("\n").pop().split(" ").map(Number);
-  return (user + system) * 1000;
+  const [user, system, clock] = stderr.trim().split("\n").pop().split(" ").map(Number);
+  return { cpu: (user + system) * 1000, clock: clock * 1000 };
 }
 
 console.log(`${cpus()[0]?.model}, node ${process.version}, best of ${rounds}`);
-console.log("| program | native, ms | WebAssembly, ms | ratio |\n| --- | --- | --- | --- |");
+console.log("| program | native, ms | WebAssembly, ms | ratio | ratio on the clock |\n| --- | --- | --- | --- | --- |");
 for (const one of cases) {
   const files = filesOf(one.folder);
-  const best = { native: Infinity, wasm: Infinity, native_small: Infinity, wasm_small: Infinity };
-  const take = (name, ms) => (best[name] = Math.min(best[name], ms));
+  const best = {};
+  const take = (name, { cpu, clock }) => {
+    best[name] ??= { cpu: Infinity, clock: Infinity };
+    best[name].cpu = Math.min(best[name].cpu, cpu);
+    best[name].clock = Math.min(best[name].clock, clock);
+  };
   for (let round = 0; round < Number(rounds); ++round) {
     take("native", natively(one, [...one.words, ...one.long]));
     take("wasm", await inWasm(one, files, [...one.words, ...one.long]));
     take("native_small", natively(one, [...one.words, ...one.small]));
     take("wasm_small", await inWasm(one, files, [...one.words, ...one.small]));
   }
-  const native = best.native - best.native_small;
-  const in_wasm = best.wasm - best.wasm_small;
-  console.log(`| ${one.name} | ${native.toFixed(0)} | ${in_wasm.toFixed(0)} | ${(in_wasm / native).toFixed(2)} |`);
+  const native = (time) => best.native[time] - best.native_small[time];
+  const in_wasm = (time) => best.wasm[time] - best.wasm_small[time];
+  const ratio = (time) => (in_wasm(time) / native(time)).toFixed(2);
+  console.log(`| ${one.name} | ${native("cpu").toFixed(0)} | ${in_wasm("cpu").toFixed(0)} | ${ratio("cpu")} | ${ratio("clock")} |`);
 }
