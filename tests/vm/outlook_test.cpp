@@ -164,6 +164,9 @@ TEST(Outlook, KnowsWhatCommandsDo) {
                          {"SETI [H1] = H2", all, all, true, true, false},
                          {"SETI H1 = [H2]", all, {1}, true, true, false},
                          {"CALL M02", {}, {}, true, true, false},
+                         {"WAIT 5", {}, {}, false, true, false},
+                         {"WAIT H1", {1}, {}, false, true, false},
+                         {"SCOMON", {}, {}, true, true, true},
                          {"MOVLNK H30", {30}, {}, true, true, true},
                          {"SYSCALL STANDSTILL , M02", {}, {}, true, true, true}}) {
     Assembled run(std::string("M01 : ") + row.command + "\nJMP M01\nM02 : JMP M02\n");

@@ -4,6 +4,12 @@
 #include "vm/isa/effects.hpp"
 
 namespace ipos::vm {
+namespace {
+
+// The machine does it alone, and nothing but the time of the task follows from it.
+constexpr bool waits(Opcode opcode) { return opcode == Opcode::WaitH || opcode == Opcode::WaitK; }
+
+}  // namespace
 
 class Outlook::Walk {
  public:
@@ -46,7 +52,7 @@ class Outlook::Walk {
     if (can_fault(command)) outlook.faults_[static_cast<size_t>(command.opcode)] = true;
     outlook.stops_ |=
         can_fault(command) || (row.flow != Flow::Next && row.flow != Flow::Jump && row.flow != Flow::Branch);
-    outlook.calls_ |= row.flow == Flow::System || row.flow == Flow::SystemCall;
+    outlook.calls_ |= (row.flow == Flow::System || row.flow == Flow::SystemCall) && !waits(command.opcode);
     note_variables(tasks_[static_cast<size_t>(task - 1)], command, row);
     for (auto value = command.operands.begin(); const OperandKind kind : row.kinds) {
       const auto label = static_cast<uint32_t>(*value++);
