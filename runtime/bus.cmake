@@ -20,7 +20,7 @@ endfunction()
 bus_layer(line SOURCES line_load.cpp)
 bus_layer(can
   SOURCES identifier_text.cpp bit_error.cpp clash.cpp line_fault.cpp line_strangers.cpp line_wiring.cpp line_repeats.cpp line_report.cpp
-  HOT frame_bits.cpp transfer.cpp line.cpp contenders.cpp
+  HOT frame_bits.cpp transfer.cpp line.cpp contenders.cpp standing_frames.cpp
   USES bus_line clock)
 bus_layer(rs485 SOURCES levels.cpp octet_fault.cpp bit_fault.cpp line_faults.cpp HOT line.cpp USES bus_line clock)
 # What a unit says on a line, and who asks it.

@@ -16,7 +16,8 @@ void Pacer::start() {
 
 void Pacer::stop() {
   catch_up();
-  behind_ = rests_ = false;
+  end_rest();
+  behind_ = false;
   queue_.cancel(event_);
 }
 
@@ -26,10 +27,12 @@ void Pacer::use(Pace pace) {
 }
 
 void Pacer::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
-  if (rests_ && now < silent_to_)
-    event_ = queue_.schedule(std::min(timed_.send(now), silent_to_), source_, *this, 0);
-  else if (run_to(now))
-    plan(now);
+  if (rests_ && now < silent_to_) {
+    event_ = queue_.schedule(std::min(timed_.send_at_rest(now, silent_to_), silent_to_), source_, *this, 0);
+    return;
+  }
+  end_rest();
+  if (run_to(now)) plan(now);
 }
 
 // All ticks up to that at `last`, and the telegrams that came in between. Each finds the time that it belongs
@@ -103,7 +106,8 @@ void Pacer::touch() {
   catch_up();
   timed_.touched();
   if (!behind_ || runs_) return;
-  behind_ = rests_ = false;
+  end_rest();
+  behind_ = false;
   queue_.cancel(event_);
   event_ = queue_.schedule(done_to_, source_, *this, 0);
 }

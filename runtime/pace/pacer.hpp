@@ -58,6 +58,11 @@ class Pacer final : private EventTarget {
   bool run_to(Time last);
   void make_up();
   void plan(Time now);
+  void end_rest() {
+    if (!rests_) return;
+    rests_ = false;
+    timed_.rest_ends();
+  }
   Time last_tick() const;
 
   EventQueue& queue_;

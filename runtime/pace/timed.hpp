@@ -37,6 +37,10 @@ class Timed {
   virtual bool lets_wait() const = 0;
   // In all of this silence nothing changes that others can see, and what is sent is the same without its ticks.
   virtual bool rests() const = 0;
+  // send() in such a silence, which ends at `until`. What it sends may be left to somebody else up to then.
+  virtual Time send_at_rest(Time now, Time /*until*/) { return send(now); }
+  // The rest is over, at its end or before: nothing is left to others any more.
+  virtual void rest_ends() {}
 
  protected:
   ~Timed() = default;

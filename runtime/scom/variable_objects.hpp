@@ -62,6 +62,17 @@ class VariableObjects {
     return due_;
   }
 
+  // Somebody else sends the cyclic objects, as their variables are now, until take_back(): leave(tag, frame, due, cycle) of
+  // each, in milliseconds. After tick() of this one.
+  size_t sending() const { return table_.sending(); }
+  template <typename Leave>
+  void leave(std::span<const int32_t> h, Leave leave) {
+    for (size_t n = 0; n < table_.sending(); ++n)
+      leave(static_cast<uint32_t>(first_tag_ + n), table_.frame(n, h), due_of_[n], uint32_t{table_.state().cyclic[n].cycle});
+    due_ = INT64_MAX;
+  }
+  void take_back() { due_ = kUnknown; }
+
   // The receive object a frame is for, and whether its variables have the frame's values already.
   std::optional<size_t> receiver(const Frame& frame) const { return table_.receiver(frame); }
   template <typename Visit>

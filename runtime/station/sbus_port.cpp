@@ -64,7 +64,8 @@ NodeId join(CanLine& line, std::optional<NodeId> node, std::string_view station,
 
 SbusPort::SbusPort(EventQueue& queue, uint32_t source, CanLine& line, std::optional<NodeId> node, int sbus,
                    std::string_view station, const SbusSettings& settings, Door& door, Journal& journal)
-    : door_(door),
+    : source_(source),
+      door_(door),
       sender_(line, join(line, node, station, settings.baud, *this)),
       objects_(door.touch().server().unit(), settings.baud, sender_, kObjectTags, sbus),
       line_(line),
@@ -102,6 +103,24 @@ Time SbusPort::lead(Time now) {
   group_master_.tick(now);
   objects_.tick(now / kMillisecond, door_.variables_in_turn());
   return now + kMillisecond;
+}
+
+// Where all of its objects find room with the line.
+Time SbusPort::tick_at_rest(Time now, Time until) {
+  const Time next = tick(now);
+  StandingFrames& standing = line_.standing();
+  if (next >= until || !standing.has_room(objects_.sending())) return next;
+  const int64_t ms = now / kMillisecond;
+  objects_.leave(door_.variables_in_turn(), [&](uint32_t tag, const Frame& frame, int64_t due, uint32_t cycle) {
+    standing.add({now + (due - ms) * kMillisecond, until, frame, tag, cycle, source_, node()});
+  });
+  line_sends_ = true;
+  return kNever;
+}
+
+void SbusPort::take_back() {
+  line_.standing().remove(node());
+  objects_.take_back();
 }
 
 void SbusPort::power_off() {
@@ -175,6 +194,7 @@ bool SbusPort::receive(Time now, const Frame& frame) {
 }
 
 void SbusPort::on_sent(Time now, const Frame& frame, uint64_t tag) {
+  if (kObjectTags <= tag && tag < kAcyclicObjectTags) return;  // nobody waits for a cyclic object
   if (tag == kMasterTag) {
     master_.on_sent(now, tag);
     tell_shared(now, frame);

@@ -60,6 +60,10 @@ class SbusPort final : public StationPort, private CanNode, private SlaveObserve
     // A unit that was switched on between two whole milliseconds keeps its ticks there.
     return due == INT64_MAX ? kNever : now + (due - ms) * kMillisecond;
   }
+  Time tick_at_rest(Time now, Time until) override;
+  void rest_ends() override {
+    if (std::exchange(line_sends_, false)) take_back();
+  }
   bool has_waiting_frames() const override { return line_.has_waiting(node()); }
   void want_again() override {
     if (std::exchange(rests_, false)) want_each_again();
@@ -78,6 +82,7 @@ class SbusPort final : public StationPort, private CanNode, private SlaveObserve
   Time lead(Time now);
   void on_frame(Time now, const Frame& frame) override;
   void want_each_again();
+  void take_back();
   bool calls() const { return master_.busy() || (client_ && client_->busy()); }
   bool waits(const Frame& frame);
   bool receive(Time now, const Frame& frame);
@@ -94,6 +99,8 @@ class SbusPort final : public StationPort, private CanNode, private SlaveObserve
   // What every tick looks at stands together.
   bool rests_ = false;  // the line need not tell it of some frames
   bool powered_ = true;
+  bool line_sends_ = false;  // the cyclic objects, as long as the station rests
+  uint32_t source_;
   Door& door_;
   LinePort sender_;
   VariableObjects objects_;

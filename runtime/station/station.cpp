@@ -244,10 +244,21 @@ void Station::resume_tick() {
 }
 
 Time Station::send(Time now) {
-  if (ticks_.sends_pending() || tells_changes_) ticks_.settle();
+  settle_to_send();
   Time next = kNever;
   for (StationPort* port : ports_) next = std::min(next, port->tick(now));
   return next;
+}
+
+Time Station::send_at_rest(Time now, Time until) {
+  settle_to_send();
+  Time next = kNever;
+  for (StationPort* port : ports_) next = std::min(next, port->tick_at_rest(now, until));
+  return next;
+}
+
+void Station::rest_ends() {
+  for (StationPort* port : ports_) port->rest_ends();
 }
 
 Ticks Station::horizon(Time first) {

@@ -171,6 +171,11 @@ class Station final : private Timed, private TaskRunner {
     for (DriveWatcher* watcher : watchers_) watcher->on_decided(unit_.drive(), tick);
   }
   Time send(Time now) override;
+  Time send_at_rest(Time now, Time until) override;
+  void rest_ends() override;
+  void settle_to_send() {
+    if (ticks_.sends_pending() || tells_changes_) ticks_.settle();
+  }
   Ticks horizon(Time first) override;
   Ticks horizon_of_idle(Time first);
   Ticks advance(Time first, Ticks most) override;

@@ -10,6 +10,9 @@ class StationPort {
   // After the tick at `now`: sends what is due, with the variables as they are now. Returns the next tick that
   // sends something; kNever for none.
   virtual Time tick(Time now) = 0;
+  // The same when the variables stay as they are until then, or the rest ends before: the line may send for the port.
+  virtual Time tick_at_rest(Time now, Time /*until*/) { return tick(now); }
+  virtual void rest_ends() {}
   // The unit has no power: nothing is heard or sent any more. The line is told first, as frames that were waiting
   // come back.
   virtual void power_off() = 0;

@@ -79,14 +79,14 @@ namespace {
 
 // The same by bytes, for the length alone. State of the stuffing: the last bit, and how many bits before it
 // are equal to it (0..3; after four equal ones a fifth ends the run).
-struct StuffStep {
-  uint8_t state;  // last bit * 4 + equal bits before it
-  uint8_t added;  // stuff bits
-};
+constexpr uint32_t kMostBytes = 8;
 
 struct Tables {
-  std::array<std::array<StuffStep, 256>, 8> stuff{};
-  std::array<uint16_t, 256> crc{};
+  // For state and byte in one number the next state in the upper byte, the stuff bits in the lower one.
+  std::array<uint16_t, 8 * 256> stuff{};
+  // [n]: what a byte leaves in the register when n bytes of zeros follow it. The register is linear, so what each byte
+  // leaves is put together in any order.
+  std::array<std::array<uint16_t, 256>, kMostBytes> crc{};
 
   constexpr Tables() {
     for (uint32_t begin = 0; begin < 8; ++begin)
@@ -101,12 +101,15 @@ struct Tables {
           before = 0;
           ++added;
         }
-        stuff[begin][byte] = {static_cast<uint8_t>(last * 4 + before), static_cast<uint8_t>(added)};
+        stuff[begin << 8 | byte] = static_cast<uint16_t>((last * 4 + before) << 8 | added);
       }
     for (uint32_t byte = 0; byte < 256; ++byte) {
       uint32_t value = byte << 7;
-      for (int i = 0; i < 8; ++i) value = (value << 1) ^ ((value & 0x4000) != 0 ? kCrcPolynomial : 0);
-      crc[byte] = static_cast<uint16_t>(value & 0x7FFF);
+      for (std::array<uint16_t, 256>& behind : crc) {
+        for (int i = 0; i < 8; ++i) value = (value << 1) ^ ((value & 0x4000) != 0 ? kCrcPolynomial : 0);
+        value &= 0x7FFF;
+        behind[byte] = static_cast<uint16_t>(value);
+      }
     }
   }
 };
@@ -114,42 +117,52 @@ constexpr Tables kTables;
 
 class LengthCounter {
  public:
-  // `state` of the stuffing after the three bits that come before the first byte.
-  explicit LengthCounter(uint8_t state) : state_(state) {}
+  LengthCounter(uint32_t state, uint32_t added) : step_(state << 8), added_(added) {}
 
   void put(uint32_t byte) {
-    const StuffStep step = kTables.stuff[state_][byte];
-    state_ = step.state;
-    added_ += step.added;
+    step_ = kTables.stuff[(step_ & 0x700) | byte];
+    added_ += step_ & 0xFF;
   }
+  uint32_t state() const { return step_ >> 8; }
   uint32_t added() const { return added_; }
 
  private:
-  uint32_t state_;
-  uint32_t added_ = 0;
+  uint32_t step_;
+  uint32_t added_;
 };
 
-uint32_t next_crc(uint32_t crc, uint32_t byte) {
-  return ((crc << 8) ^ kTables.crc[(crc >> 7 ^ byte) & 0xFF]) & 0x7FFF;
+// What the register, 15 bits, leaves behind so many bytes of zeros.
+uint32_t behind(uint32_t crc, uint32_t bytes) {
+  if (bytes == 0) return crc;
+  const uint32_t low = crc << 1 & 0xFF;  // its last 7 bits meet the second byte
+  return kTables.crc[bytes - 1][crc >> 7] ^ (bytes == 1 ? low << 7 : kTables.crc[bytes - 2][low]);
 }
 
 }  // namespace
 
-uint32_t frame_bits(const Frame& frame) {
-  if (frame.extended) return wire_bits(frame).count + kIntermissionBits;
+FrameHead frame_head(const Frame& frame) {
+  if (frame.extended) return {};
   // Start of frame, identifier, RTR, IDE, r0 and length are 19 bits. Zeros in front do not change the CRC.
   const uint32_t header = frame.id << 7 | (frame.remote ? 1U << 6 : 0U) | frame.length;
-  constexpr uint8_t kBehindStart[] = {2, 4, 0, 5};  // of 0 and the two highest bits of the identifier
-  LengthCounter length(kBehindStart[header >> 16]);
-  uint32_t crc = next_crc(0, header >> 16);
-  const auto put = [&](uint32_t byte) {
-    length.put(byte);
-    crc = next_crc(crc, byte);
-  };
-  put(header >> 8 & 0xFF);
-  put(header & 0xFF);
+  // State behind the three bits that come before the first whole byte: 0 and the two highest of the identifier.
+  constexpr uint8_t kBehindStart[] = {2, 4, 0, 5};
+  LengthCounter length(kBehindStart[header >> 16], 0);
+  length.put(header >> 8 & 0xFF);
+  length.put(header & 0xFF);
+  const uint32_t crc = kTables.crc[2][header >> 16] ^ kTables.crc[1][header >> 8 & 0xFF] ^ kTables.crc[0][header & 0xFF];
+  return {static_cast<uint16_t>(crc), static_cast<uint8_t>(length.state()), static_cast<uint8_t>(length.added())};
+}
+
+uint32_t frame_bits(const Frame& frame, const FrameHead& head) {
+  if (frame.extended) return wire_bits(frame).count + kIntermissionBits;
   const uint32_t bytes = frame.remote ? 0 : frame.length;
-  for (uint32_t i = 0; i < bytes; ++i) put(frame.data[i]);
+  LengthCounter length(head.stuffing, head.added);
+  uint32_t crc = behind(head.crc, bytes);
+  const std::array<uint16_t, 256>* followed_by = kTables.crc.data() + bytes;  // so many bytes
+  for (uint32_t i = 0; i < bytes; ++i) {
+    length.put(frame.data[i]);
+    crc ^= (*--followed_by)[frame.data[i]];
+  }
   // The CRC has 15 bits; a 16th that is unlike the last one adds no stuff bit.
   length.put(crc >> 7);
   length.put((crc << 1 & 0xFF) | (~crc & 1));

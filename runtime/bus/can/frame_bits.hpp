@@ -23,8 +23,18 @@ WireBits wire_bits(const Frame& frame);
 // The first recessive bit from there on; bits.count when there is none.
 uint32_t next_recessive(const WireBits& bits, uint32_t from);
 
-// Exact length with stuff bits.
-uint32_t frame_bits(const Frame& frame);
+// What comes before the data of a frame with a standard identifier, the same for all of its identifier and length: the
+// register of the CRC behind it, the state of the stuffing, and the stuff bits in it.
+struct FrameHead {
+  uint16_t crc = 0;
+  uint8_t stuffing = 0;
+  uint8_t added = 0;
+};
+FrameHead frame_head(const Frame& frame);
+
+// Exact length with stuff bits; the head is that of the frame.
+uint32_t frame_bits(const Frame& frame, const FrameHead& head);
+inline uint32_t frame_bits(const Frame& frame) { return frame_bits(frame, frame_head(frame)); }
 
 // Without any stuff bit: 47 + 8 n, extended 67 + 8 n.
 constexpr uint32_t unstuffed_bits(uint32_t length, bool extended) {

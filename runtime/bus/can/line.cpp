@@ -39,6 +39,7 @@ NodeId CanLine::attach(std::string name, uint32_t baud, CanNode& node) {
   winners_.reserve(nodes_.size());
   filter_.grow(nodes_.size());
   erring_.grow(nodes_.size());
+  standing_.grow(nodes_.size());
   report_absence(id, nullptr);
   return id;
 }
@@ -49,23 +50,22 @@ bool CanLine::is_reachable(NodeId from, NodeId to) const {
 
 // --- sending
 
-SendStatus CanLine::send(NodeId node, const Frame& frame, uint64_t tag, bool overtakes) {
-  assert(node < nodes_.size());
+SendStatus CanLine::send_canonical(NodeId node, const Frame& frame, uint64_t tag, bool overtakes) {
+  assert(node < nodes_.size() && tag <= kTagMask && is_valid(frame) && frame == canonical(frame));
   Node& n = nodes_[node];
-  if (!is_valid(frame)) return SendStatus::InvalidFrame;
   if (!takes_bus(n)) return SendStatus::NotActive;
   wake();
   const uint64_t ready = static_cast<uint64_t>(queue_.now() / bit_time_) + 1;
   const uint32_t key = arbitration_key(frame);
   const uint64_t wanted = std::max(ready, n.suspended_until);
   if (n.queue.empty()) {
-    n.queue.emplace_back(frame, tag, ready, key);
+    n.queue.emplace_back(frame, tag, ready);
     if (n.wired) contenders_.join(node, wanted, key);
   } else if (overtakes) {
     withdraw(node, tag);
-    return send(node, frame, tag);
+    return send_canonical(node, frame, tag);
   } else if (n.queue.size() < kSendQueueLimit) {
-    queue_behind(node, {frame, tag, ready, key});
+    queue_behind(node, {frame, tag, ready});
   } else {
     return SendStatus::QueueFull;
   }
@@ -77,8 +77,8 @@ SendStatus CanLine::send(NodeId node, const Frame& frame, uint64_t tag, bool ove
 // Others of this node are waiting already.
 void CanLine::queue_behind(NodeId node, const Pending& pending) {
   std::vector<Pending>& queue = nodes_[node].queue;
-  const auto behind = std::upper_bound(queue.begin(), queue.end(), pending.key,
-                                       [](uint32_t wanted, const Pending& p) { return wanted < p.key; });
+  const auto behind = std::upper_bound(queue.begin(), queue.end(), pending.key(),
+                                       [](uint32_t wanted, const Pending& p) { return wanted < p.key(); });
   queue.insert(behind, pending);
   queue_changed(node);
 }
@@ -117,7 +117,7 @@ void CanLine::queue_changed(NodeId id) {
   const Node& node = nodes_[id];
   if (node.queue.empty() || !node.wired) return contenders_.remove(id);
   const Pending& first = node.queue.front();
-  contenders_.put(id, std::max(first.ready_bit, node.suspended_until), first.key);
+  contenders_.put(id, std::max(first.ready_bit, node.suspended_until), first.key());
 }
 
 void CanLine::schedule_start() {
@@ -182,11 +182,12 @@ inline bool CanLine::pass_plain(uint64_t bit) {
     const NodeId id = plain_sender(bit);
     if (id == kNoNode) return any;
     Pending& pending = nodes_[id].queue.front();
-    const uint32_t bits = known_.bits(pending.frame);
+    const KnownFrames::Known& known = known_.know(pending.frame);
+    const uint32_t bits = known.bits;
     const Time end = static_cast<Time>(bit + bits - kIntermissionBits) * bit_time_;
     if (!queue_.advance(end, source_)) return any;
     pending.on_wire = true;
-    end_plain({pending.frame, id, static_cast<Time>(bit) * bit_time_, end, bits}, bit, pending.tag);
+    end_plain({pending.frame, id, static_cast<Time>(bit) * bit_time_, end, bits}, bit, pending.tag, known);
     if (segment.start_bit != kNoBit) return true;
     bit = segment.free_bit;
   }
@@ -272,12 +273,12 @@ void CanLine::deliver_clean(Time now, const Segment& segment, uint64_t resting) 
 }
 
 // Its sender may have been cut off meanwhile, or counts errors now.
-[[gnu::always_inline]] inline void CanLine::end_plain(const FrameRecord& record, uint64_t begin,
-                                                      uint64_t tag) {
+[[gnu::always_inline]] inline void CanLine::end_plain(const FrameRecord& record, uint64_t begin, uint64_t tag,
+                                                      const KnownFrames::Known& known) {
   release(segments_[0], begin, record.bits);
   report_frame(record);
   const std::span<const uint64_t> takers = filter_.takers(record.frame.id);
-  const uint64_t resting = known_.resting(record.frame);
+  const uint64_t resting = known.resting;
   const uint64_t wanted = takers[0] & ~resting;
   if (takers.size() > 1 || erring_.words()[0] != 0) {
     note_plain(record.sender, record.frame, tag, begin, record.bits);
@@ -359,9 +360,9 @@ bool CanLine::begin_transfer(uint32_t number, uint64_t bit) {
     uint32_t lowest = ~0U;
     contenders_.each([&](NodeId id) {
       const Pending* first = nodes_[id].segment == number ? first_ready(nodes_[id], bit) : nullptr;
-      if (first == nullptr || first->key > lowest) return;
-      if (first->key < lowest) winners_.clear();
-      lowest = first->key;
+      if (first == nullptr || first->key() > lowest) return;
+      if (first->key() < lowest) winners_.clear();
+      lowest = first->key();
       winners_.push_back(id);
     });
     std::sort(winners_.begin(), winners_.end());  // in order of attachment
@@ -406,7 +407,7 @@ void CanLine::end_transfer(Time now, uint32_t number) {
   assert(segment.busy());
   const FrameRecord record{winner.frame, winner.node, static_cast<Time>(transfer.start_bit) * bit_time_, now,
                            transfer.bits};
-  if (transfer.plain) return end_plain(record, transfer.start_bit, winner.tag);
+  if (transfer.plain) return end_plain(record, transfer.start_bit, winner.tag, known_.last(winner.frame));
   release(segment, transfer.start_bit, transfer.bits);
   // Callbacks below may send and withdraw; they change the queues, never the transfer, as the next one has
   // not begun.

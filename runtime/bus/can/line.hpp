@@ -21,6 +21,7 @@
 #include "runtime/bus/can/node.hpp"
 #include "runtime/bus/can/node_set.hpp"
 #include "runtime/bus/can/repeats.hpp"
+#include "runtime/bus/can/standing_frames.hpp"
 #include "runtime/bus/can/transfer.hpp"
 #include "runtime/bus/line/line_load.hpp"
 #include "runtime/clock/event_queue.hpp"
@@ -58,8 +59,14 @@ class CanLine final : private EventTarget {
   void want_again(NodeId node, uint32_t id) { known_.want_again(node, id); }
 
   // `overtakes`: those of the node with this tag that still wait are withdrawn.
-  SendStatus send(NodeId node, const Frame& frame, uint64_t tag, bool overtakes = false);
+  SendStatus send(NodeId node, const Frame& frame, uint64_t tag, bool overtakes = false) {
+    return is_valid(frame) ? send_canonical(node, canonical(frame), tag, overtakes) : SendStatus::InvalidFrame;
+  }
+  // The same of a valid frame that is canonical(), as one that is sent again is.
+  SendStatus send_canonical(NodeId node, const Frame& frame, uint64_t tag, bool overtakes = false);
   void withdraw(NodeId node, uint64_t tag);
+  // What stations at rest leave to the line.
+  StandingFrames& standing() { return standing_; }
 
   bool has_waiting(NodeId node) const { return !nodes_[node].queue.empty(); }  // frames, or one on the wire
 
@@ -104,15 +111,16 @@ class CanLine final : private EventTarget {
  private:
   struct Pending {
     Frame frame;
-    uint64_t tag;
-    uint32_t key;
-    bool on_wire = false;
-    bool withdrawn = false;  // while on the wire
-    uint64_t ready_bit;      // takes part in arbitration from here on
+    uint64_t tag : 62;
+    uint64_t on_wire : 1 = 0;
+    uint64_t withdrawn : 1 = 0;  // while on the wire
+    uint64_t ready_bit;          // takes part in arbitration from here on
 
-    Pending(const Frame& sent, uint64_t its_tag, uint64_t ready, uint32_t its_key)
-        : frame(canonical(sent)), tag(its_tag), key(its_key), ready_bit(ready) {}
+    Pending(const Frame& sent, uint64_t its_tag, uint64_t ready)
+        : frame(sent), tag(its_tag & kTagMask), ready_bit(ready) {}
+    uint32_t key() const { return arbitration_key(frame); }
   };
+  static constexpr uint64_t kTagMask = (uint64_t{1} << 62) - 1;
   struct alignas(64) Node {
     // What every frame asks for stands in one line of memory.
     CanNode* node = nullptr;
@@ -174,7 +182,7 @@ class CanLine final : private EventTarget {
   bool pass_plain(uint64_t bit);
   void begin_plain(NodeId id, uint64_t bit);
   void note_plain(NodeId id, const Frame& frame, uint64_t tag, uint64_t bit, uint32_t bits);
-  void end_plain(const FrameRecord& record, uint64_t begin, uint64_t tag);
+  void end_plain(const FrameRecord& record, uint64_t begin, uint64_t tag, const KnownFrames::Known& known);
   bool begin_transfer(uint32_t segment, uint64_t bit);
   Listeners listeners_of(uint32_t segment) const;
   bool find_sound();
@@ -259,6 +267,7 @@ class CanLine final : private EventTarget {
 
   Repeats repeats_;
   bool in_turn_ = false;
+  StandingFrames standing_{queue_, *this};
 
   uint64_t frames_ = 0;
   LoadMeter meter_;

@@ -36,6 +36,14 @@ struct Journal final : runtime::Timed, runtime::TelegramReader {
     note("send", now);
     return telegram_every == 0 ? kNever : (now / telegram_every + 1) * telegram_every;
   }
+  Time send_at_rest(Time now, Time until) override {
+    if (!leaves) return send(now);
+    note("leave", now, " until " + std::to_string(until / kMillisecond));
+    return kNever;
+  }
+  void rest_ends() override {
+    if (leaves) text += "rest ends; ";
+  }
   Ticks horizon(Time first) override {
     EXPECT_EQ(queue.now(), first);
     return ahead;
@@ -67,7 +75,7 @@ struct Journal final : runtime::Timed, runtime::TelegramReader {
   EventQueue& queue;
   Ticks ahead = 0, able = runtime::kNoBound, quiet = 0;
   Time telegram_every = 0;
-  bool waits = true, idle = false;
+  bool waits = true, idle = false, leaves = false;
   std::function<void(Time)> on_tick;
   std::function<void()> on_read;
   std::string text;
@@ -275,6 +283,48 @@ TEST(PacerJournal, StoppedItHasCaughtUpAndItMayStartAgain) {
   desk.pacer.start();
   EXPECT_EQ(desk.until(10), "tick 10; send 10; silence 11; ");
   EXPECT_EQ(desk.next(), 31);
+}
+
+// At rest it may leave to others what it sends, until the silence ends: then it is told before the ticks that are pending.
+TEST(PacerJournal, WhatIsSentAtRestMayBeLeftToOthers) {
+  const auto begin = [](Desk& desk) {
+    desk.timed.quiet = 20;
+    desk.timed.idle = desk.timed.leaves = true;
+    desk.timed.telegram_every = 3 * kMillisecond;
+    desk.pacer.start();
+    EXPECT_EQ(desk.until(3), "tick 0; send 0; silence 1; leave 3 until 21; ");
+    EXPECT_EQ(desk.next(), 21);
+    desk.timed.ahead = 40;
+  };
+  {
+    Desk desk;
+    begin(desk);
+    desk.pacer.catch_up();
+    EXPECT_EQ(desk.timed.take(), "advance 1+3; settle; ") << "who reads does not end it";
+    EXPECT_EQ(desk.until(21), "rest ends; advance 4+18; send 21; silence 22; ");
+    EXPECT_EQ(desk.until(24), "leave 24 until 42; ") << "and it begins anew";
+  }
+  {
+    Desk desk;
+    begin(desk);
+    desk.pacer.touch();
+    EXPECT_EQ(desk.timed.take(), "advance 1+3; settle; touched; rest ends; ");
+    desk.pacer.touch();
+    EXPECT_EQ(desk.timed.take(), "touched; ") << "once";
+  }
+  {
+    Desk desk;
+    begin(desk);
+    desk.pacer.stop();
+    EXPECT_EQ(desk.timed.take(), "advance 1+3; settle; rest ends; ");
+  }
+  {
+    Desk desk;
+    begin(desk);
+    desk.pacer.use(Pace::InTurn);
+    EXPECT_EQ(desk.timed.take(), "advance 1+3; settle; touched; rest ends; ");
+    EXPECT_EQ(desk.until(4), "tick 4; send 4; settle; ");
+  }
 }
 
 // A telegram is read behind the tick in front of it, before the next one.

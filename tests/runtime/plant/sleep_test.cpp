@@ -7,7 +7,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <random>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "runtime/signals/variables.hpp"
 #include "tests/harness/proves.hpp"
@@ -156,6 +160,65 @@ TEST(Sleep, ATelegramThatBringsNothingNewIsTakenWhenItDoesAgain) {
   EXPECT_TRUE(is_asleep(hears));
   plant->run_until(ms(6020));
   EXPECT_EQ(hears.variable(r1), 8);
+}
+
+// A sender that sleeps leaves its telegrams to the line. Each comes when it is due, with the values of that millisecond,
+// whenever somebody writes one, and none twice.
+TEST(Sleep, ATelegramThatWasLeftToTheLineComesInItsMillisecondWithItsValue) {
+  const std::string units =
+      "[[bus]]\nname = \"can\"\nkind = \"can\"\nbaud = 500000\n"
+      "[[station]]\nname = \"sends\"\nunit = \"mdxb\"\nprogram = \"S.IPC\"\nsbus = \"can\"\n"
+      "[[station]]\nname = \"hears\"\nunit = \"mdxb\"\nsbus = \"can\"\n[station.parameters]\nP881 = 2\n";
+  const std::string sender =
+      "#include <constb.h>\nSCTRCYCL T10, T30; long d1, d2; main() { d1 = 7;\n"
+      "T10.ObjectNo = 1100; T10.CycleTime = 10; T10.Format = 4; T10.DPointer = numof(d1); _SBusCommDef(SCD_TRCYCL, T10);\n"
+      "T30.ObjectNo = 1101; T30.CycleTime = 30; T30.Format = 4; T30.DPointer = numof(d2); _SBusCommDef(SCD_TRCYCL, T30);\n"
+      "_SBusCommOn(); while (1); }";
+  struct Frames final : runtime::CanObserver {
+    void on_frame(const runtime::CanLine&, const runtime::FrameRecord& record) override {
+      seen[record.frame.id].emplace_back(record.start / runtime::kMillisecond, record.frame.data[3]);
+    }
+    void on_line_event(const runtime::CanLine&, const runtime::LineEvent&) override {}
+    std::map<uint32_t, std::vector<std::pair<Time, int>>> seen;
+  };
+  const auto plant = make_plant(units, {{"S.IPC", sender}}, std::nullopt, {});
+  ASSERT_TRUE(plant);
+  Frames frames;
+  plant->add_observer(frames);
+  runtime::Station& sends = *plant->stations()[0];
+  const uint32_t d1 = *signals::find_variable(sends, "d1"), d2 = *signals::find_variable(sends, "d2");
+  plant->run_until(ms(3000));
+  ASSERT_TRUE(is_asleep(sends));
+  const auto first = [&](uint32_t id, Time cycle) { return frames.seen[id].front().first % cycle; };
+  const Time begin10 = first(1100, 10), begin30 = first(1101, 30);
+  std::map<Time, std::pair<int, int>> written;  // from this millisecond on, both
+  written[0] = {7, 0};
+  for (Time at = 3000; at < 5000; at += 37 + at % 101) {  // at any place within a cycle, also in the moment of a telegram
+    plant->run_until(ms(at) - (at % 2 == 0 ? 1 : 0));
+    const int low = static_cast<int>(at % 120), high = static_cast<int>(at % 50);
+    const auto write = [&](uint32_t variable, int value) {
+      ASSERT_TRUE(sends.drive().parameters().execute(runtime::ParameterService::WriteVolatile,
+                                                     static_cast<uint16_t>(11000 + variable), value));
+    };
+    write(d1, low);
+    write(d2, high);
+    written[at % 2 == 0 ? at : at + 1] = {low, high};  // the telegram of a millisecond that is over has gone
+  }
+  plant->run_until(ms(6000));
+  EXPECT_TRUE(is_asleep(sends));
+  for (const auto& [id, cycle, begin] : {std::tuple(1100U, Time{10}, begin10), std::tuple(1101U, Time{30}, begin30)}) {
+    Time due = frames.seen[id].front().first;
+    for (const auto& [at, value] : frames.seen[id]) {
+      ASSERT_EQ(at, due) << id;
+      if (at >= 3000) {
+        const auto& values = std::prev(written.upper_bound(at))->second;
+        ASSERT_EQ(value, id == 1100 ? values.first : values.second) << id << " at " << at;
+      }
+      due += cycle;
+    }
+    EXPECT_EQ(begin, frames.seen[id].back().first % cycle);
+    EXPECT_GT(due, 5970) << "to the end";
+  }
 }
 
 TEST(Sleep, WhoStaysAwakeLeavesOutNothing) {
