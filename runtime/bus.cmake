@@ -35,9 +35,10 @@ bus_layer(canopen
   SOURCES abort.cpp object_dictionary.cpp object_access.cpp eds.cpp sdo_server.cpp pdo.cpp emergency.cpp error_control.cpp
           node.cpp sdo_client.cpp master.cpp sdo_master.cpp dbc_messages.cpp words.cpp sdo_words.cpp
   USES bus_can bus_movilink clock stdlib)
+ipos_layer(bus_profibus_octets FOLDERS runtime/bus/profibus/octets)
 bus_layer(profibus_fms FOLDER profibus/fms
   SOURCES connection.cpp pdu.cpp messages.cpp server.cpp slave_links.cpp client_link.cpp
-  USES bus_movilink clock stdlib)
+  USES bus_profibus_octets bus_movilink clock stdlib)
 bus_layer(profibus
   SOURCES fdl_frame.cpp fdl_receiver.cpp dp_service.cpp cfg_data.cpp frame_text.cpp dp_slave.cpp card.cpp line_fault.cpp
           line.cpp slave_station.cpp slave_handler.cpp master.cpp fieldbus_parameters.cpp dp_unit.cpp gsd.cpp line_plan.cpp

@@ -70,6 +70,9 @@ class Drive final : private DriveLink {
   // act only if P876 is ON and the source is the one of P100 or P101. `cyclic` is false for acyclic RS-485
   // requests, which do not restart the monitoring.
   void take_po(PoSource link, std::span<const uint16_t> words, bool cyclic = true);
+  // The drive has these words already and listens: to take them as cyclic ones only begins the count of silence anew, which
+  // makes steady_left() no less right.
+  bool has_po(PoSource link, std::span<const uint16_t> words) const;
   // A valid cyclic request without process data restarts the monitoring, too (1053 1610 p. 27).
   void take_request(PoSource source);
   // The bus has a watchdog of its own, and it has run out.
@@ -147,6 +150,7 @@ class Drive final : private DriveLink {
 
   // --- what it shows ---
   Words pi() const;
+  uint16_t pi_word(size_t n) const;
   // Those of its words that may change in a tick in which nothing is decided, the first in bit 0.
   uint16_t counting_words() const {
     settings();
@@ -273,7 +277,6 @@ class Drive final : private DriveLink {
   UnitCondition enabled_condition() const;
   UnitCondition read_condition() const;
   uint8_t status_block() const;
-  uint16_t pi_word(size_t n) const;
   int32_t user_display() const;
   int32_t share_of_ai2(int32_t limit) const;
   int32_t with_torque_limit(int32_t current_limit) const;

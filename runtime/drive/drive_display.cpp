@@ -111,17 +111,16 @@ uint16_t Drive::find_counting_words() const {
   return static_cast<uint16_t>(words);
 }
 
+// Only a current needs axis(), which is computed when somebody asks.
 uint16_t Drive::pi_word(size_t n) const {
-  const AxisState& axis = state_.axis.state();
-  const int32_t speed = shown_speed();
   switch (static_cast<PiAssignment>(settings().pi[n])) {
     case PiAssignment::None: return 0;
-    case PiAssignment::Speed: return word_of_speed(speed);
-    case PiAssignment::RelativeSpeed: return relative_of_speed(speed, set().maximum_speed);
-    case PiAssignment::OutputCurrent: return word_of_current(noisy(axis.output_current, kIn, Noise::Current));
-    case PiAssignment::ActiveCurrent: return word_of_current(noisy(axis.active_current, kIn, Noise::ActiveCurrent));
-    case PiAssignment::PositionLow: return static_cast<uint16_t>(axis.position & 0xFFFF);
-    case PiAssignment::PositionHigh: return static_cast<uint16_t>(static_cast<uint32_t>(axis.position) >> 16);
+    case PiAssignment::Speed: return word_of_speed(shown_speed());
+    case PiAssignment::RelativeSpeed: return relative_of_speed(shown_speed(), set().maximum_speed);
+    case PiAssignment::OutputCurrent: return word_of_current(noisy(axis().output_current, kIn, Noise::Current));
+    case PiAssignment::ActiveCurrent: return word_of_current(noisy(axis().active_current, kIn, Noise::ActiveCurrent));
+    case PiAssignment::PositionLow: return static_cast<uint16_t>(position() & 0xFFFF);
+    case PiAssignment::PositionHigh: return static_cast<uint16_t>(static_cast<uint32_t>(position()) >> 16);
     case PiAssignment::StatusWord1: return status_word_1();
     case PiAssignment::StatusWord2: return status_word_2();
     case PiAssignment::StatusWord3: return status_word_3();

@@ -103,12 +103,11 @@ void CanopenPort::take_output(Time now, const canopen::Words& words, uint16_t wr
   server_.take_output(now, OutputChannel::Single, std::span(output_).first(count));
 }
 
-canopen::Words CanopenPort::input(Time now) {
+canopen::Words CanopenPort::input(Time /*now*/, uint16_t which) {
   canopen::Words words{};
-  const ProcessWords input = server_.input(now);
-  const auto further = std::copy(input.begin(), input.end(), words.begin());
-  const FurtherWords& more = door_.look().drive().further_pi();
-  std::copy(more.begin(), more.end(), further);
+  const Drive& drive = door_.look().drive();
+  for (size_t n = 0; n < words.size(); ++n)
+    if ((which >> n & 1) != 0) words[n] = n < kProcessWords ? drive.pi_word(n) : drive.further_pi()[n - kProcessWords];
   return words;
 }
 

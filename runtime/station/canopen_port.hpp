@@ -55,7 +55,7 @@ class CanopenPort final : public StationPort,
   void on_bus_off(Time) override { sender_.recover(); }
 
   void take_output(Time now, const canopen::Words& words, uint16_t written) override;
-  canopen::Words input(Time now) override;
+  canopen::Words input(Time now, uint16_t which) override;
   canopen::UnitStatus status(Time now) override;
   void synchronize(Time now) override { server_.synchronize(now); }
   void state_changed(Time now, canopen::State state) override;

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace ipos::runtime {
 
 FmsControl::FmsControl(EventQueue& queue, uint32_t source, ProfibusBus& bus, const ControlConfig& config,
@@ -41,12 +43,19 @@ void FmsControl::on_event(Time now, uint32_t, uint64_t argument) {
 
 // The same answer to the same request is told once.
 void FmsControl::on_done(uint8_t address, uint8_t cref, const profibus::fms::Done& done) {
-  std::string asked = fmt::format("slave {}, connection {}, {}", address, cref, profibus::fms::describe(done.request));
-  std::string answer = profibus::fms::describe(done.response);
-  std::string& last = told_[asked];
-  if (last == answer) return;
-  journal_.note(queue_.now(), Weight::Why, name(), fmt::format("{}: {}", asked, answer));
-  last = std::move(answer);
+  using profibus::fms::describe;
+  auto told = std::find_if(told_.begin(), told_.end(), [&](const Told& one) {
+    return one.address == address && one.cref == cref && one.request == done.request;
+  });
+  if (told != told_.end() && told->response == done.response) return;
+  const bool same = told != told_.end() && describe(told->response) == describe(done.response);
+  if (told == told_.end())
+    told_.push_back({address, cref, done.request, done.response});
+  else
+    told->response = done.response;
+  if (same) return;
+  journal_.note(queue_.now(), Weight::Why, name(),
+                fmt::format("slave {}, connection {}, {}: {}", address, cref, describe(done.request), describe(done.response)));
 }
 
 }  // namespace ipos::runtime

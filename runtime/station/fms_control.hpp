@@ -2,7 +2,6 @@
 #pragma once
 
 #include <deque>
-#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,7 +38,14 @@ class FmsControl final : public Control, private EventTarget, private profibus::
   const FmsMasterConfig& settings_;
   profibus::Master master_;
   std::deque<profibus::FmsPartner> partners_;  // one a station
-  std::map<std::string, std::string> told_;    // the answer that came last, by what was asked
+  // The answer that was told last, of each request.
+  struct Told {
+    uint8_t address;
+    uint8_t cref;
+    profibus::fms::Request request;
+    profibus::fms::Response response;
+  };
+  std::vector<Told> told_;
 };
 
 }  // namespace ipos::runtime

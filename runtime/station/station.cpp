@@ -272,9 +272,11 @@ Ticks Station::horizon_of_idle(Time first) {
   return ticks;
 }
 
-// Who is on a serial line is asked at any time. A CANopen node tells what the unit decides.
+// Who is on a serial line is asked at any time. A CANopen node tells what the unit decides: of one that has just been called to its
+// turn it is found out now whether the next ticks are such that decide nothing.
 Ticks Station::silence(Time first) {
   if (ticks_.mode() != ManyTicks::Mode::Idle && (x13_ || xt_)) return 0;
+  if (tells_changes_ && ticks_.mode() == ManyTicks::Mode::Steady) horizon(first);
   const Ticks known = ticks_.known_silence();
   const Ticks silent = known != 0 ? known : find_silence(first);
   return tells_changes_ ? std::min(silent, ticks_.undecided()) : silent;

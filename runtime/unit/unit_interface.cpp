@@ -125,6 +125,9 @@ void UnitInterface::show_fieldbus_card(uint8_t address) {
 
 // P876, P101 and P100 (1053 1610 p. 41); P841 of MOVITRAC 31 stands for them.
 void UnitInterface::look_for_obstacles(const DataBus& bus, bool slave) {
+  uint32_t& looked = looked_for_[static_cast<size_t>(bus.bus)][slave ? 1 : 0];
+  const uint32_t settings_now = parameters_.changes() + 1;
+  if (std::exchange(looked, settings_now) == settings_now) return;
   constexpr int32_t kOn = 1;
   const Settings& settings = state_.settings();
   const BusSource& wanted = bus_source(bus.bus);

@@ -157,6 +157,8 @@ class UnitInterface final : public ParameterServer, public ProcessDataServer, pu
   std::string reason_;
   std::vector<std::string> obstacles_;
   uint32_t told_obstacles_ = 0;  // a bit each
+  // The settings for which it was told what there is, for each bus, and as a slave: ParameterStore::changes() + 1.
+  std::array<std::array<uint32_t, 2>, kPoSources> looked_for_{};
 };
 
 }  // namespace ipos::runtime

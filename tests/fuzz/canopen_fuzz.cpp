@@ -41,7 +41,7 @@ struct FuzzUnit final : canopen::Unit, ParameterServer {
     require(written != 0 && written < 1U << objects::kProcessWords, "some of the ten words are written");
     require(operational, "outputs are taken in operational only");
   }
-  Words input(Time) override { return words; }
+  Words input(Time, uint16_t) override { return words; }
   UnitStatus status(Time) override { return {0x0203, (words[0] & 1) != 0, (words[0] & 2) != 0}; }
   void synchronize(Time) override {}
   void state_changed(Time, State state) override { operational = state == State::Operational; }

@@ -2,6 +2,8 @@
 // manual 11264926 use the same ones).
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -48,12 +50,27 @@ struct Addressed {
   friend bool operator==(const Addressed&, const Addressed&) = default;
 };
 
+// Rows of kConnections by the upper four of the eleven bits of an identifier: that of the nodes, and that to all.
+struct FunctionCode {
+  const ConnectionRow* nodes = nullptr;
+  const ConnectionRow* all = nullptr;
+};
+inline constexpr auto kFunctionCodes = [] {
+  std::array<FunctionCode, 16> codes{};
+  for (const ConnectionRow& row : kConnections) (row.addressed ? codes[row.base >> 7].nodes : codes[row.base >> 7].all) = &row;
+  return codes;
+}();
+static_assert(std::all_of(std::begin(kConnections), std::end(kConnections),
+                          [](const ConnectionRow& row) { return (row.base & kMaxNode) == 0 && row.base >> 7 < 16; }));
+
 // Nothing for an identifier outside of the set.
 constexpr std::optional<Addressed> connection_of(uint32_t id) {
-  for (const ConnectionRow& row : kConnections)
-    if (row.addressed ? id > row.base && id - row.base <= kMaxNode : id == row.base)
-      return Addressed{row.connection, static_cast<uint8_t>(id - row.base)};
-  return std::nullopt;
+  if (id >> 7 >= kFunctionCodes.size()) return std::nullopt;
+  const auto node = static_cast<uint8_t>(id & kMaxNode);
+  const FunctionCode& code = kFunctionCodes[id >> 7];
+  const ConnectionRow* const row = node == 0 ? code.all : code.nodes;
+  if (row == nullptr) return std::nullopt;
+  return Addressed{row->connection, node};
 }
 
 // All identifiers of a node, and those to all nodes.

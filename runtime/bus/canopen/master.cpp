@@ -66,13 +66,13 @@ Master::Master(EventQueue& queue, uint32_t source, MasterSettings settings, Mast
         return (defaults.value(index_of(first, n), objects::kCobId) & objects::kOff) == 0;
       };
       if (is_on(objects::kReceivePdo))
-        link.receive[n] = mapping_of(defaults, index_of(objects::kReceiveMapping, n));
+        link.receive[n] = PdoLayout(mapping_of(defaults, index_of(objects::kReceiveMapping, n)));
       if (is_on(objects::kTransmitPdo))
-        link.transmit[n] = mapping_of(defaults, index_of(objects::kTransmitMapping, n));
+        link.transmit[n] = PdoLayout(mapping_of(defaults, index_of(objects::kTransmitMapping, n)));
     }
     link.writes = plan.writes;
     for (const PdoPlan& pdo : plan.pdos) {
-      (pdo.transmit ? link.transmit : link.receive)[pdo.number] = pdo.mapping;
+      (pdo.transmit ? link.transmit : link.receive)[pdo.number] = PdoLayout(pdo.mapping);
       const std::vector<SdoWrite> writes = remapping(pdo, plan.node);
       link.writes.insert(link.writes.end(), writes.begin(), writes.end());
     }
@@ -161,9 +161,8 @@ void Master::cycle(Time now) {
 void Master::send_outputs(size_t node) {
   const NodePlan& plan = settings_.nodes[node];
   for (uint8_t n = 0; n < objects::kPdos; ++n)
-    if (const Mapping& mapping = links_[node].receive[n]; !mapping.empty())
-      sender_->send_latest({identifier(kReceive[n], plan.node), static_cast<uint8_t>(bits_of(mapping) / 8),
-                            pack(mapping, plan.output)},
+    if (const PdoLayout& layout = links_[node].receive[n]; layout.bytes() != 0)
+      sender_->send_latest({identifier(kReceive[n], plan.node), layout.bytes(), layout.pack(plan.output)},
                            tag_of(node, kOutput1 + n));
 }
 
@@ -187,12 +186,12 @@ void Master::take(Time now, size_t node, Connection connection, const Frame& fra
                                        {data[3], data[4], data[5], data[6], data[7]}});
     return tell(now, node, data[0] != 0 || data[1] != 0, "sends " + emergency_text(frame));
   }
-  for (uint8_t n = 0; n < objects::kPdos; ++n)
-    if (connection == kTransmit[n] && frame.length * 8U >= bits_of(link.transmit[n]) &&
-        !link.transmit[n].empty()) {
-      unpack(link.transmit[n], frame.data, link.report.input);
-      ++link.report.pdos;
-    }
+  const auto* const pdo = std::find(std::begin(kTransmit), std::end(kTransmit), connection);
+  if (pdo == std::end(kTransmit)) return;
+  const PdoLayout& layout = link.transmit[static_cast<size_t>(pdo - std::begin(kTransmit))];
+  if (layout.bytes() == 0 || frame.length < layout.bytes()) return;
+  layout.unpack(frame.data, link.report.input);
+  ++link.report.pdos;
 }
 
 void Master::take_life(Time now, size_t node, uint8_t byte) {

@@ -13,6 +13,7 @@
 
 #include "runtime/bus/canopen/mapping.hpp"
 #include "runtime/bus/canopen/nmt.hpp"
+#include "runtime/bus/canopen/pdo.hpp"
 #include "runtime/bus/canopen/place.hpp"
 #include "runtime/bus/canopen/sdo_client.hpp"
 #include "runtime/bus/canopen/unit.hpp"
@@ -118,7 +119,7 @@ class Master final : public CanNode, private Timer::Owner {
     SdoClient client;
     std::vector<SdoWrite> writes;
     size_t next = 0;
-    std::array<Mapping, objects::kPdos> receive, transmit;  // as the node has them in the end
+    std::array<PdoLayout, objects::kPdos> receive, transmit;  // as the node has them in the end
     std::optional<uint8_t> toggle;                          // of the next guarding answer
     std::optional<Timer> sdo_timer, guard_timer, life_timer;
   };

@@ -241,8 +241,11 @@ void Node::unit_changed(Time now) {
   const UnitStatus status = unit_.status(now);
   emergency_.set(now, Cause::Fault, status.fault, status.status_word_1);
   emergency_.set(now, Cause::MainsMissing, status.mains_missing, status.status_word_1);
-  if (std::none_of(transmit_.begin(), transmit_.end(), [](const TransmitPdo& pdo) { return pdo.sends_on_change(); })) return;
-  const Words words = unit_.input(now);
+  unsigned which = 0;
+  for (const TransmitPdo& pdo : transmit_)
+    if (pdo.sends_on_change()) which |= pdo.words();
+  if (which == 0) return;
+  const Words words = unit_.input(now, static_cast<uint16_t>(which));
   for (TransmitPdo& pdo : transmit_) pdo.inputs_changed(now, words);
 }
 

@@ -103,7 +103,7 @@ tl::expected<std::vector<uint8_t>, Abort> ObjectAccess::read(Time now, Address a
   if (row.rule == Rule::ErrorEntry && address.sub > dictionary_.value(address.index))
     return tl::unexpected(Abort::NoData);
   const uint32_t value =
-      row.rule == Rule::Input ? unit_.input(now)[static_cast<size_t>(address.sub - 1)] : entry->value;
+      row.rule == Rule::Input ? unit_.input(now, static_cast<uint16_t>(1U << (address.sub - 1)))[static_cast<size_t>(address.sub - 1)] : entry->value;
   return low_byte_first(value, bytes_of(row.type));
 }
 

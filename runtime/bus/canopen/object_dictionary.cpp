@@ -40,6 +40,11 @@ std::string entry_name(Address address) {
   return {};
 }
 
+ObjectDictionary::ObjectDictionary(uint8_t node) : node_(node) {
+  restore();
+  outputs_ = static_cast<size_t>(find({objects::kOutput, 1}) - entries_.data());
+}
+
 void ObjectDictionary::restore() {
   static const std::vector<Entry> kDefaults = defaults();
   entries_ = kDefaults;
@@ -71,9 +76,8 @@ void ObjectDictionary::set(Address address, uint32_t value) {
 }
 
 void ObjectDictionary::set_outputs(const std::array<uint16_t, objects::kProcessWords>& words, uint16_t which) {
-  Entry* const first = &entries_[static_cast<size_t>(find({objects::kOutput, 1}) - entries_.data())];
   for (size_t n = 0; n < words.size(); ++n)
-    if ((which >> n & 1) != 0) first[n].value = words[n];
+    if ((which >> n & 1) != 0) entries_[outputs_ + n].value = words[n];
 }
 
 }  // namespace ipos::runtime::canopen

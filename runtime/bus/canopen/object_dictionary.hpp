@@ -110,7 +110,7 @@ inline constexpr uint32_t kOff = 1U << 31, kNoRemote = 1U << 30, kExtended = 1U 
 
 class ObjectDictionary {
  public:
-  explicit ObjectDictionary(uint8_t node) : node_(node) { restore(); }
+  explicit ObjectDictionary(uint8_t node);
 
   // All values as after power-on.
   void restore();
@@ -135,6 +135,7 @@ class ObjectDictionary {
 
   uint8_t node_;
   std::vector<Entry> entries_;
+  size_t outputs_;  // the place of PO1
 };
 
 }  // namespace ipos::runtime::canopen

@@ -16,15 +16,6 @@ std::optional<uint32_t> id_of(const ObjectDictionary& dictionary, uint16_t index
   return cob_id & objects::kIdMask;
 }
 
-uint8_t bytes_of(const Mapping& mapping) { return static_cast<uint8_t>(bits_of(mapping) / 8); }
-
-uint16_t words_of(const Mapping& mapping) {
-  unsigned words = 0;
-  for (const Mapped& mapped : mapping)
-    if (is_word(mapped)) words |= 1U << (mapped.address.sub - 1);
-  return static_cast<uint16_t>(words);
-}
-
 }  // namespace
 
 PdoData pack(const Mapping& mapping, const Words& words) {
@@ -55,6 +46,19 @@ uint16_t unpack(const Mapping& mapping, const PdoData& data, Words& words) {
   return static_cast<uint16_t>(written);
 }
 
+PdoLayout::PdoLayout(const Mapping& mapping) {
+  unsigned at = 0;
+  for (const Mapped& mapped : mapping) {
+    if (is_word(mapped)) {
+      const auto word = static_cast<uint8_t>(mapped.address.sub - 1);
+      fields_[count_++] = {static_cast<uint8_t>(at), word};
+      words_ = static_cast<uint16_t>(words_ | 1U << word);
+    }
+    at += mapped.bits / 8U;
+  }
+  bytes_ = static_cast<uint8_t>(bits_of(mapping) / 8);
+}
+
 ReceivePdo::ReceivePdo(ObjectDictionary& dictionary, Unit& unit, uint8_t number)
     : dictionary_(dictionary), unit_(unit), number_(number) {
   configure();
@@ -64,12 +68,12 @@ void ReceivePdo::configure() {
   const uint16_t index = entry_index(objects::kReceivePdo, number_);
   id_ = id_of(dictionary_, index);
   type_ = static_cast<uint8_t>(dictionary_.value(index, objects::kType));
-  mapping_ = mapping_of(dictionary_, entry_index(objects::kReceiveMapping, number_));
+  layout_ = PdoLayout(mapping_of(dictionary_, entry_index(objects::kReceiveMapping, number_)));
   held_.reset();
 }
 
 ReceivePdo::Outcome ReceivePdo::take(Time now, const Frame& frame) {
-  const uint8_t bytes = bytes_of(mapping_);
+  const uint8_t bytes = layout_.bytes();
   if (frame.length < bytes) return Outcome::TooShort;
   if (pdo_types::is_synchronous(type_))
     held_ = frame.data;
@@ -86,7 +90,7 @@ void ReceivePdo::on_sync(Time now) {
 
 void ReceivePdo::deliver(Time now, const PdoData& data) {
   Words words{};
-  const uint16_t written = unpack(mapping_, data, words);
+  const uint16_t written = layout_.unpack(data, words);
   dictionary_.set_outputs(words, written);
   if (written != 0) unit_.take_output(now, words, written);
 }
@@ -111,8 +115,7 @@ void TransmitPdo::configure(Time now) {
   type_ = static_cast<uint8_t>(value(objects::kType));
   inhibit_time_ = Time{value(objects::kInhibitTime)} * kInhibitUnit;
   event_time_ = Time{value(objects::kEventTimer)} * kMillisecond;
-  mapping_ = mapping_of(dictionary_, entry_index(objects::kTransmitMapping, number_));
-  words_ = words_of(mapping_);
+  layout_ = PdoLayout(mapping_of(dictionary_, entry_index(objects::kTransmitMapping, number_)));
   if (!runs_) return;
   if (was_on != id_.has_value() || type_ != old_type) return start(now);
   if (event_time_ == 0)
@@ -165,7 +168,7 @@ void TransmitPdo::on_remote(Time now) {
 
 // One that waits is sent with what the words are then.
 void TransmitPdo::inputs_changed(Time now, const Words& words) {
-  if (sends_on_change() && pack(mapping_, words) != last_) trigger(now);
+  if (sends_on_change() && layout_.pack(words) != last_) trigger(now);
 }
 
 void TransmitPdo::trigger(Time now) {
@@ -187,7 +190,7 @@ void TransmitPdo::on_timer(Time now, uint32_t kind) {
 
 void TransmitPdo::send(Time /*now*/, const PdoData& data) {
   last_ = data;
-  place_.sender.send_latest({*id_, bytes_of(mapping_), data}, place_.tag);
+  place_.sender.send_latest({*id_, layout_.bytes(), data}, place_.tag);
 }
 
 }  // namespace ipos::runtime::canopen

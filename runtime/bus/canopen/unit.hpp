@@ -23,7 +23,8 @@ class Unit {
  public:
   // Of the words those count whose bit is set in `written`, PO1 in bit 0.
   virtual void take_output(Time now, const Words& words, uint16_t written) = 0;
-  virtual Words input(Time now) = 0;
+  // Those whose bit is set in `which`, PI1 in bit 0.
+  virtual Words input(Time now, uint16_t which) = 0;
   virtual UnitStatus status(Time now) = 0;
   // What it sends on change is other than before, or was held back: Node::unit_changed() is to come in the next millisecond.
   virtual void follow_again(Time /*now*/) {}

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "runtime/bus/can/identifier_text.hpp"
 #include "runtime/bus/can/line.hpp"
@@ -14,7 +15,7 @@ namespace ipos::runtime {
 namespace {
 
 // The identifier that answers a request, or nothing for one that is not answered at once.
-std::optional<uint32_t> answer_of(const SbusIdentifier& request) {
+constexpr std::optional<uint32_t> answer_of(const SbusIdentifier& request) {
   switch (request.telegram) {
     case Telegram::ProcessOutput: return sbus_identifier(Telegram::ProcessInput, request.address);
     case Telegram::ParameterRequest: return sbus_identifier(Telegram::ParameterResponse, request.address);
@@ -22,6 +23,20 @@ std::optional<uint32_t> answer_of(const SbusIdentifier& request) {
     default: return std::nullopt;
   }
 }
+
+// What an identifier means, and what answers it: of each looked up once, as a check looks at every frame of a line.
+struct Meaning {
+  std::optional<SbusIdentifier> telegram;
+  std::optional<uint32_t> answer;
+};
+constexpr auto kMeanings = [] {
+  std::array<Meaning, 1024> meanings{};
+  for (uint32_t id = 0; id < meanings.size(); ++id) {
+    meanings[id].telegram = classify_identifier(id);
+    if (meanings[id].telegram) meanings[id].answer = answer_of(*meanings[id].telegram);
+  }
+  return meanings;
+}();
 
 }  // namespace
 
@@ -67,10 +82,11 @@ void SbusCheck::check_telegram(const CanLine& line, const FrameRecord& record) {
   if (known.sender == kNoNode) known.sender = record.sender;
   if (known.sender != record.sender) tell_second_sender(line, record, known.sender);
   if (!known.watched) return;
-  if (const auto identifier = classify_identifier(record.frame.id)) {
-    check_address(line, record, *identifier);
-    check_masters(line, record, *identifier);
-    check_window(line, record, *identifier);
+  if (const Meaning* const meaning = record.frame.id < kMeanings.size() ? &kMeanings[record.frame.id] : nullptr;
+      meaning != nullptr && meaning->telegram) {
+    if (!slaves_.empty() && !units_outside_) check_address(line, record, *meaning->telegram);
+    check_masters(line, record, meaning->answer);
+    if (meaning->telegram->telegram == Telegram::ProcessOutputSync) check_window(line, record, meaning->telegram->address);
   }
   for (const uint32_t id : sync_ids_)
     if (id == record.frame.id) syncs_[id] = record.start;
@@ -86,7 +102,7 @@ void SbusCheck::tell_second_sender(const CanLine& line, const FrameRecord& recor
 void SbusCheck::check_address(const CanLine& line, const FrameRecord& record,
                               const SbusIdentifier& identifier) {
   const TelegramType& type = telegram_type(identifier.telegram);
-  if (!type.from_master || slaves_.empty() || units_outside_) return;
+  if (!type.from_master) return;
   const auto meant = [&](const Slave& slave) {
     return (type.grouped ? slave.settings.group : slave.settings.address) == identifier.address;
   };
@@ -104,10 +120,9 @@ void SbusCheck::check_address(const CanLine& line, const FrameRecord& record,
 
 // MOVLNK needs the line for itself from its request to the answer (1053 1610 p. 47).
 void SbusCheck::check_masters(const CanLine& line, const FrameRecord& record,
-                              const SbusIdentifier& identifier) {
+                              std::optional<uint32_t> answer) {
   std::erase_if(open_,
                 [&](const Exchange& e) { return e.until < record.end || e.answer == record.frame.id; });
-  const auto answer = answer_of(identifier);
   if (!answer) return;
   for (const Exchange& exchange : open_) {
     if (exchange.master == record.sender) continue;
@@ -120,11 +135,9 @@ void SbusCheck::check_masters(const CanLine& line, const FrameRecord& record,
   open_.push_back({record.sender, *answer, record.end + kSbusReplyTimeout});
 }
 
-void SbusCheck::check_window(const CanLine& line, const FrameRecord& record,
-                             const SbusIdentifier& identifier) {
-  if (identifier.telegram != Telegram::ProcessOutputSync) return;
+void SbusCheck::check_window(const CanLine& line, const FrameRecord& record, uint8_t address) {
   for (const Slave& slave : slaves_) {
-    if (slave.settings.address != identifier.address) continue;
+    if (slave.settings.address != address) continue;
     const auto sync = syncs_.find(slave.settings.sync_id);
     if (sync == syncs_.end()) continue;
     const Time at = record.start - sync->second;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -53,8 +54,9 @@ class SbusCheck final : public CanObserver {
   void check_telegram(const CanLine& line, const FrameRecord& record);
   void tell_second_sender(const CanLine& line, const FrameRecord& record, NodeId first);
   void check_address(const CanLine& line, const FrameRecord& record, const SbusIdentifier& identifier);
-  void check_masters(const CanLine& line, const FrameRecord& record, const SbusIdentifier& identifier);
-  void check_window(const CanLine& line, const FrameRecord& record, const SbusIdentifier& identifier);
+  // `answer`: of the request that the telegram is.
+  void check_masters(const CanLine& line, const FrameRecord& record, std::optional<uint32_t> answer);
+  void check_window(const CanLine& line, const FrameRecord& record, uint8_t address);  // of synchronous process data
   void tell(Time now, std::string text);
 
   SbusCheckClient& client_;

@@ -15,7 +15,7 @@
 
 #include <tl/expected.hpp>
 
-#include "runtime/bus/profibus/octets.hpp"
+#include "runtime/bus/profibus/octets/octets.hpp"
 
 namespace ipos::profibus {
 

@@ -33,6 +33,18 @@ void put(Octets& octets, uint32_t value) {
   put(octets, static_cast<uint16_t>(value));
 }
 
+// How many entries a block has; nothing: it is none.
+std::optional<size_t> entries_of(std::span<const uint8_t> block) {
+  if (block.size() != kBlockHead + kMostBlockEntries * kEntrySize) return std::nullopt;
+  const size_t count = block[1];
+  return count == 0 || count > kMostBlockEntries ? std::nullopt : std::optional(count);
+}
+
+BlockEntry entry_of(std::span<const uint8_t> block, size_t n) {
+  const auto entry = block.subspan(kBlockHead + n * kEntrySize, kEntrySize);
+  return {word(entry), long_word(entry.subspan(2))};
+}
+
 }  // namespace
 
 Octets encode_block(std::span<const BlockEntry> entries) {
@@ -46,14 +58,10 @@ Octets encode_block(std::span<const BlockEntry> entries) {
 }
 
 std::optional<std::vector<BlockEntry>> decode_block(std::span<const uint8_t> octets) {
-  if (octets.size() != kBlockHead + kMostBlockEntries * kEntrySize) return std::nullopt;
-  const size_t count = octets[1];
-  if (count == 0 || count > kMostBlockEntries) return std::nullopt;
+  const auto count = entries_of(octets);
+  if (!count) return std::nullopt;
   std::vector<BlockEntry> entries;
-  for (size_t n = 0; n < count; ++n) {
-    const auto entry = octets.subspan(kBlockHead + n * kEntrySize, kEntrySize);
-    entries.push_back({word(entry), long_word(entry.subspan(2))});
-  }
+  for (size_t n = 0; n < *count; ++n) entries.push_back(entry_of(octets, n));
   return entries;
 }
 
@@ -144,11 +152,11 @@ tl::expected<fms::Accessed, ReturnCode> FmsObjects::write_parameter(Time now, ui
 
 // The additional code's high octet tells which entry is wrong; those before it are written, those after not.
 tl::expected<fms::Accessed, ReturnCode> FmsObjects::write_block(Time now, std::span<const uint8_t> data) {
-  const auto entries = decode_block(data);
-  if (!entries) return tl::unexpected(fms::errors::kTypeConflict);
+  const auto count = entries_of(data);
+  if (!count) return tl::unexpected(fms::errors::kTypeConflict);
   uint16_t number = 0;
-  for (const BlockEntry& entry : *entries) {
-    ++number;
+  while (number < *count) {
+    const BlockEntry entry = entry_of(data, number++);
     const auto stored = parameters_.write(now, entry.index, entry.data);
     if (stored) continue;
     ReturnCode code = stored.error();

@@ -49,7 +49,7 @@ std::optional<Done> ClientLink::finish(Response response) {
   if (response.end == End::Aborted) open_ = false;
   if (wanted_.empty()) return std::nullopt;
   Done done{std::move(wanted_.front()), std::move(response)};
-  wanted_.pop_front();
+  wanted_.erase(wanted_.begin());
   return done;
 }
 

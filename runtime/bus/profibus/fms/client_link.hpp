@@ -2,9 +2,9 @@
 // and opens it anew after it has ended. Octets out and in; frames and their order are the caller's.
 #pragma once
 
-#include <deque>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "runtime/bus/profibus/fms/messages.hpp"
 
@@ -43,7 +43,7 @@ class ClientLink {
 
   const Connection& connection_;
   MasterEntry entry_;
-  std::deque<Request> wanted_;
+  std::vector<Request> wanted_;  // the first one is next
   bool open_ = false;
   Sent sent_ = Sent::Nothing;  // and its answer is awaited
   Time sent_at_ = 0;

@@ -32,18 +32,15 @@ std::optional<Service> service_of(uint8_t number, bool all_attributes) {
   return std::nullopt;
 }
 
-std::vector<Part> object_parts(const Object& object, bool all_attributes) {
-  std::vector<Part> parts{{kObjectIndex, word_octets(object.index)},
+Parts object_parts(const Object& object, bool all_attributes) {
+  Parts parts{{kObjectIndex, word_octets(object.index)},
                           {kObjectCode, {Object::kObjectCode}},
                           {kDataType, {Object::kDataType}},
                           {kLength, {object.length}}};
   if (!all_attributes) return parts;
-  parts.insert(parts.end(), {{kObjectPassword, {}},
-                             {kGroups, {}},
-                             {kRights, word_octets(rights_of(object.access))},
-                             {kAddress, {}},
-                             {kName, {}},
-                             {kExtension, {}}});
+  for (const uint8_t none : {kObjectPassword, kGroups}) parts.push_back({none, {}});
+  parts.push_back({kRights, word_octets(rights_of(object.access))});
+  for (const uint8_t none : {kAddress, kName, kExtension}) parts.push_back({none, {}});
   return parts;
 }
 
@@ -58,7 +55,7 @@ std::optional<Object> object_of(const Pdu& pdu) {
   return object;
 }
 
-std::vector<Part> error_parts(ReturnCode code) {
+Parts error_parts(ReturnCode code) {
   return {{kCode, {code.error_class, code.code}}, {kAdditional, word_octets(code.additional)}};
 }
 

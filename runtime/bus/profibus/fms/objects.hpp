@@ -6,18 +6,18 @@
 #include <optional>
 #include <span>
 #include <string_view>
-#include <vector>
 
 #include <tl/expected.hpp>
 
 #include "runtime/bus/movilink/return_code.hpp"
+#include "runtime/bus/profibus/octets/octets.hpp"
 #include "runtime/clock/event_queue.hpp"
 
 namespace ipos::profibus::fms {
 
 using runtime::Time;
 using stdlib::ReturnCode;
-using Octets = std::vector<uint8_t>;
+using profibus::Octets;
 
 enum class Access : uint8_t { All, Read, Write };
 constexpr std::string_view access_text(Access access) {  // as the manual prints it

@@ -7,7 +7,6 @@ namespace ipos::profibus::fms {
 namespace {
 
 constexpr uint8_t kConstructed = 0x80, kTagFollows = 7, kLengthFollows = 15;
-constexpr size_t kMostParts = 16;  // more than any service has
 
 struct IdInfo {
   bool constructed = false;
@@ -22,7 +21,7 @@ void put(Octets& out, const IdInfo& id) {
   if (id.length >= kLengthFollows) out.push_back(id.length);
 }
 
-void put(Octets& out, const std::vector<Part>& parts) {
+void put(Octets& out, const Parts& parts) {
   for (const Part& part : parts) {
     put(out, IdInfo{false, part.tag, static_cast<uint8_t>(part.octets.size())});
     out.insert(out.end(), part.octets.begin(), part.octets.end());
@@ -60,8 +59,8 @@ class Reader {
     }
     return id;
   }
-  bool parts(size_t count, std::vector<Part>& out) {
-    if (count > kMostParts) return false;
+  bool parts(size_t count, Parts& out) {
+    if (count > Parts::kMost) return false;
     for (size_t n = 0; n < count; ++n) {
       const auto head = id();
       if (!head || head->constructed || head->length > rest_.size()) return false;

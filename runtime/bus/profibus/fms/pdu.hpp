@@ -4,10 +4,13 @@
 // (docs/reference/protocols/profibus.md#fms).
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cassert>
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "runtime/bus/profibus/fms/objects.hpp"
 
@@ -24,11 +27,36 @@ struct Part {
   friend bool operator==(const Part&, const Part&) = default;
 };
 
+// The components of a unit. They lie in place, as answers come again and again.
+class Parts {
+ public:
+  static constexpr size_t kMost = 16;  // more than any service has
+
+  Parts() = default;
+  Parts(std::initializer_list<Part> parts) {
+    for (const Part& part : parts) push_back(part);
+  }
+
+  size_t size() const { return count_; }
+  const Part* begin() const { return parts_.data(); }
+  const Part* end() const { return parts_.data() + count_; }
+  void push_back(const Part& part) {
+    assert(count_ < kMost);
+    parts_[count_++] = part;
+  }
+
+  friend bool operator==(const Parts& a, const Parts& b) { return std::equal(a.begin(), a.end(), b.begin(), b.end()); }
+
+ private:
+  std::array<Part, kMost> parts_;
+  size_t count_ = 0;
+};
+
 struct Pdu {
   PduKind kind = PduKind::Request;
   uint8_t invoke = 0;   // not in Initiate
   uint8_t service = 0;  // its number; not in Reject and Initiate
-  std::vector<Part> parts;
+  Parts parts;
 
   const Octets* part(uint8_t tag) const;
   std::optional<uint16_t> word(uint8_t tag) const;  // of a part of two octets

@@ -45,6 +45,7 @@ struct Response {
   std::vector<std::string> texts;   // of Identify: vendor, model, revision
   ReturnCode error;                 // class, code and additional of Error
   uint8_t reason = 0;               // of Rejected and Aborted
+  friend bool operator==(const Response&, const Response&) = default;
 
   static Response failed(ReturnCode error) { return {End::Error, {}, {}, {}, error, 0}; }
   static Response rejected(Reason why) { return {End::Rejected, {}, {}, {}, {}, static_cast<uint8_t>(why)}; }

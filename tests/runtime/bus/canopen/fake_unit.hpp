@@ -32,7 +32,13 @@ class FakeUnit final : public Unit, public ParameterServer {
     taken.push_back(now);
     last_written = written;
   }
-  Words input(Time) override { return inputs; }
+  // Nothing of what was not asked for.
+  Words input(Time, uint16_t which) override {
+    Words words{};
+    for (size_t n = 0; n < words.size(); ++n)
+      if ((which >> n & 1) != 0) words[n] = inputs[n];
+    return words;
+  }
   UnitStatus status(Time) override { return state; }
   void synchronize(Time now) override { syncs.push_back(now); }
   void state_changed(Time, State to) override { states.push_back(to); }

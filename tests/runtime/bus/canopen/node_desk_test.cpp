@@ -33,7 +33,7 @@ struct OrderedUnit final : canopen::Unit, ParameterServer {
   void take_output(Time, const Words& words, uint16_t written) override {
     calls.push_back("output " + std::to_string(words[0]) + " " + std::to_string(written));
   }
-  Words input(Time) override {
+  Words input(Time, uint16_t) override {
     calls.emplace_back("input");
     return {word};
   }

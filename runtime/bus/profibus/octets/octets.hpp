@@ -32,7 +32,7 @@ class Octets {
   Octets(It first, It last) {
     assign(first, last);
   }
-  // Text and FMS have them so.
+  // Text has them so.
   Octets(const std::vector<uint8_t>& octets) { assign(octets.begin(), octets.end()); }
   operator std::vector<uint8_t>() const { return {begin(), end()}; }
   Octets(const Octets& other) { assign(other.begin(), other.end()); }
