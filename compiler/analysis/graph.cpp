@@ -1,6 +1,8 @@
 // The graph is that of verified code: every label leads to a command.
 #include "compiler/analysis/graph.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <unordered_map>
 #include <utility>
@@ -22,6 +24,19 @@ std::vector<const vm::BlockInfo*> blocks_of(const vm::Instruction& code) {
     if (row.kinds[operand] == vm::OperandKind::Variable)
       for (const vm::BlockInfo& block : vm::blocks_of(code.opcode, operand, keyword)) all.push_back(&block);
   return all;
+}
+
+uint32_t line_of(const vm::Image& image, uint32_t address) {
+  const auto next = std::upper_bound(image.lines.begin(), image.lines.end(), address,
+                                     [](uint32_t at, const vm::LineEntry& entry) { return at < entry.address; });
+  return next == image.lines.begin() ? 0 : std::prev(next)->line;
+}
+
+std::string variable_name(const vm::Image& image, uint32_t variable) {
+  for (const vm::Symbol& symbol : image.symbols)
+    if (variable >= symbol.variable && variable < symbol.variable + symbol.count)
+      return symbol.count == 1 ? symbol.name : fmt::format("{}[{}]", symbol.name, variable - symbol.variable);
+  return fmt::format("H{}", variable);
 }
 
 Graph::Graph(const vm::Image& image) {

@@ -35,6 +35,11 @@ struct Root {
 // Of the blocks of variables that a command begins, the rows that hold for it.
 std::vector<const vm::BlockInfo*> blocks_of(const vm::Instruction& code);
 
+// Of the source that the command at the address comes from; 0: the image does not know it.
+uint32_t line_of(const vm::Image& image, uint32_t address);
+// "lSpeed", "aPos[3]", or "H420" where the program has no name for it.
+std::string variable_name(const vm::Image& image, uint32_t variable);
+
 struct Graph {
   explicit Graph(const vm::Image& image);
 

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "compiler/analysis/graph.hpp"
+#include "compiler/analysis/uses.hpp"
 #include "compiler/analysis/values.hpp"
 #include "stdlib/language_tables.hpp"
 #include "vm/isa/effects.hpp"
@@ -36,23 +37,12 @@ class Maps {
   }
 
  private:
-  uint32_t line_of(size_t command) const {
-    const uint32_t address = graph_.commands[command].address;
-    const auto next = std::upper_bound(image_.lines.begin(), image_.lines.end(), address,
-                                       [](uint32_t at, const vm::LineEntry& entry) { return at < entry.address; });
-    return next == image_.lines.begin() ? 0 : std::prev(next)->line;
-  }
+  uint32_t line_of(size_t command) const { return analysis::line_of(image_, graph_.commands[command].address); }
   std::string function_name(size_t entry) const {
     const uint32_t address = graph_.commands[entry].address;
     for (const vm::FunctionEntry& function : image_.functions)
       if (function.address == address) return function.name.substr(0, function.name.find('@'));
     return fmt::format("word {}", address);
-  }
-  std::string variable_name(uint32_t variable) const {
-    for (const vm::Symbol& symbol : image_.symbols)
-      if (variable >= symbol.variable && variable < symbol.variable + symbol.count)
-        return symbol.count == 1 ? symbol.name : fmt::format("{}[{}]", symbol.name, variable - symbol.variable);
-    return fmt::format("H{}", variable);
   }
   Runner runner(const Root& root) const {
     if (root.entry == 0) return {1};
@@ -111,31 +101,6 @@ class Maps {
     std::vector<Runner> read, written;
   };
 
-  // The command takes only its place, whatever was there.
-  static bool only_writes(Opcode opcode) {
-    return opcode == Opcode::SetHH || opcode == Opcode::SetHK || opcode == Opcode::SetiLoad || opcode == Opcode::NotH;
-  }
-
-  std::vector<Span> read_by(size_t number) const {
-    const vm::Instruction& code = graph_.commands[number].code;
-    const vm::Coding& row = vm::coding(code.opcode);
-    std::vector<Span> all;
-    const std::vector<const vm::BlockInfo*> blocks = blocks_of(code);
-    for (size_t operand = 0; operand < row.operand_count; ++operand) {
-      if (row.kinds[operand] != vm::OperandKind::Variable || (operand == 0 && only_writes(code.opcode))) continue;
-      int64_t count = 1;
-      for (const vm::BlockInfo* block : blocks)
-        if (block->operand == operand) count = block->use == vm::BlockUse::Write ? 0 : std::max<int64_t>(count, block->variables);
-      if (code.opcode == Opcode::Copy) count = operand == 0 ? 0 : code.operands[2];
-      all.push_back({code.operands[operand], code.operands[operand] + count - 1});
-    }
-    if (code.opcode == Opcode::SetiLoad) {
-      const Interval from = values_.at(number, static_cast<uint32_t>(code.operands[1]));
-      all.push_back({from.least, from.most});
-    }
-    return all;
-  }
-
   void note(const std::vector<Span>& spans, const Runner& who, std::vector<Runner> Use::*list) {
     for (const Span& span : spans) {
       if (span.last - span.first >= static_cast<int64_t>(kMostOfAPointer)) continue;
@@ -149,7 +114,7 @@ class Maps {
   void find_uses() {
     for (const Root& root : graph_.roots)
       for (const size_t command : graph_.reached_from(root.entry)) {
-        note(read_by(command), runner(root), &Use::read);
+        note(read_by(graph_, values_, command), runner(root), &Use::read);
         note(values_.written_by(command), runner(root), &Use::written);
       }
   }
@@ -216,7 +181,7 @@ class Maps {
     std::vector<StateMap> all;
     for (const auto& [variable, numbers] : compared) {
       if (numbers.size() < 2) continue;
-      StateMap map{variable_name(variable), static_cast<uint16_t>(variable), {numbers.begin(), numbers.end()}, {}};
+      StateMap map{variable_name(image_, variable), static_cast<uint16_t>(variable), {numbers.begin(), numbers.end()}, {}};
       for (size_t n = 0; n < graph_.commands.size(); ++n) {
         const vm::Instruction& code = graph_.commands[n].code;
         if (code.opcode != Opcode::SetHK || static_cast<uint32_t>(code.operands[0]) != variable) continue;

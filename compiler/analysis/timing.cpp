@@ -100,12 +100,7 @@ class Analysis {
     return fmt::format("the code at word {}", address);
   }
 
-  uint32_t line_of(size_t command) const {
-    const uint32_t address = graph_.commands[command].address;
-    const auto next = std::upper_bound(image_.lines.begin(), image_.lines.end(), address,
-                                       [](uint32_t at, const vm::LineEntry& entry) { return at < entry.address; });
-    return next == image_.lines.begin() ? 0 : std::prev(next)->line;
-  }
+  uint32_t line_of(size_t command) const { return analysis::line_of(image_, graph_.commands[command].address); }
 
  private:
   struct Ways {

@@ -66,10 +66,6 @@ Interval result(Opcode opcode, const Interval& a, const Interval& b) {
   }
 }
 
-bool is_system_variable(uint32_t variable) {
-  return variable >= stdlib::kFirstSystemVariable && variable <= stdlib::kLastSystemVariable;
-}
-
 // The members of structures that say where the unit or the bus writes, and how many variables from there on.
 struct Pointer {
   std::string_view type, member;
@@ -81,17 +77,27 @@ constexpr Pointer kPointers[] = {
 struct Target {
   uint32_t offset;  // of the member
   int64_t variables;
+  std::optional<uint32_t> format;  // the member that says how many bytes come
 };
 std::vector<Target> pointers_of(std::string_view type) {
   std::vector<Target> all;
   for (const Pointer& pointer : kPointers) {
     if (pointer.type != type) continue;
     const stdlib::Structure& structure = *stdlib::find_structure(type);
-    for (uint32_t n = 0; n < structure.members.size(); ++n)
-      for (const std::string_view name : structure.members[n])
-        if (name == pointer.member) all.push_back({n, pointer.variables});
+    const auto member = [&](std::string_view wanted) -> std::optional<uint32_t> {
+      for (uint32_t n = 0; n < structure.members.size(); ++n)
+        for (const std::string_view name : structure.members[n])
+          if (name == wanted) return n;
+      return std::nullopt;
+    };
+    if (const auto offset = member(pointer.member)) all.push_back({*offset, pointer.variables, type == "SCREC" ? member("Format") : std::nullopt});
   }
   return all;
+}
+
+// Of a format of 4 bytes or fewer, in the low byte, it takes one variable (1053 1610 p. 54).
+int64_t variables_of(const Target& target, const Interval& format) {
+  return target.format && format.least == format.most && (format.least & 0xFF) <= 4 ? 1 : target.variables;
 }
 
 // Which of its variables the host writes: of a structure with a result that one, else all.
@@ -104,6 +110,10 @@ Span host_target(const vm::BlockInfo& block, uint32_t first) {
 }
 
 }  // namespace
+
+bool is_system_variable(uint32_t variable) {
+  return variable >= stdlib::kFirstSystemVariable && variable <= stdlib::kLastSystemVariable;
+}
 
 Values::Values(const Graph& graph, uint32_t variables) : graph_(graph), variables_(variables) {
   std::set<int64_t> constants{INT32_MIN, 0, INT32_MAX};
@@ -158,7 +168,8 @@ Values::Values(const Graph& graph, uint32_t variables) : graph_(graph), variable
               more = share({host_target(block, first)}, any.shared) || more;
             for (const Target& target : pointers_of(block.type)) {
               const Interval to = read(writer, state, first + target.offset);
-              more = share({{to.least, to.most + target.variables - 1}}, any.shared) || more;
+              const int64_t count = variables_of(target, target.format ? read(writer, state, first + *target.format) : kAny);
+              more = share({{to.least, to.most + count - 1}}, any.shared) || more;
             }
           }
           if (opcode == Opcode::MovCom) more = share({{0, variables - 1}}, any.shared) || more;  // its layout is on no page read

@@ -28,6 +28,9 @@ struct Span {
   bool has(int64_t variable) const { return variable >= first && variable <= last; }
 };
 
+// The unit reads or writes it.
+bool is_system_variable(uint32_t variable);
+
 class Values {
  public:
   // `variables`: how many the unit has.

@@ -227,6 +227,12 @@ nlohmann::ordered_json profibus_json(const runtime::ProfibusLinePlan& line) {
   return entry;
 }
 
+nlohmann::ordered_json turns_json(const ProgramTurns& turns) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const ProgramTurns::OfTask& one : turns.tasks) all.push_back({{"task", one.task}, {"turns", one.turns}, {"turn_ms", one.ms}});
+  return all;
+}
+
 nlohmann::ordered_json reaction_json(const Reaction& one) {
   const auto or_null = [](const std::optional<Time>& time) {
     return time ? nlohmann::ordered_json(*time) : nlohmann::ordered_json();
@@ -237,6 +243,8 @@ nlohmann::ordered_json reaction_json(const Reaction& one) {
           {"receiver", one.receiver},
           {"from_input_ns", or_null(one.from_input)},
           {"from_telegram_ns", or_null(one.from_telegram)},
+          {"sender_turns", turns_json(one.sent)},
+          {"receiver_turns", turns_json(one.received)},
           {"because", one.because}};
 }
 

@@ -2,6 +2,7 @@
 // programs take is what compiler/analysis counts, what the line takes is what the bus plan computes.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,18 +11,32 @@
 
 namespace ipos::tools {
 
+// The turns of one program's loops on the longest way from something to something else.
+struct ProgramTurns {
+  struct OfTask {
+    int task = 0;
+    uint64_t turns = 0, ms = 0;  // ms of one
+  };
+  bool depends = false;
+  std::vector<OfTask> tasks;
+  uint64_t ms = 0;      // of all
+  std::string because;  // why nothing bounds them
+};
+
 struct Reaction {
   std::string line;
   std::string sender, receiver;
   uint32_t object = 0;
-  // Of what each program does within one turn of its loop. None: `because` says why nothing bounds it.
+  // None: `because` says why nothing bounds it.
   std::optional<runtime::Time> from_input;
   std::optional<runtime::Time> from_telegram;  // from when it is due
   std::string because;
   // What it is made of.
-  uint64_t sender_turn = 0, receiver_turn = 0;  // ms
-  int sender_task = 0, receiver_task = 0;
+  ProgramTurns sent, received;
+  std::string line_because, cycle_because;  // why the line, or the sender's cycle, bounds nothing
   runtime::Time period = 0, response = 0;
+  // By the number of a reaction whose sender is the receiver of this one: from its variables to those that go on.
+  std::map<size_t, ProgramTurns> onward;
 };
 
 // Of each object that one station sends and another one receives. The plant has run the trial of its plan.

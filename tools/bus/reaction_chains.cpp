@@ -1,6 +1,6 @@
-// Each further object adds at its worst: a period until it is sampled, for it was due just before the write; then its line, the tick
-// of the receiver and two turns, which is the reaction from its telegram. A program that reads in one task and writes in another one
-// adds two turns of the latter. What the reaction before counts to the terminal of an output is no less than to the write of a variable.
+// From an input of the first station to the telegram as in its reaction; then each object: the tick of its receiver, the turns that its
+// program takes from its variables to those that go on, a period until they are sampled, for they were due just before, and the line;
+// at the end the turns from the last object to an output.
 #include "tools/bus/reaction_chains.hpp"
 
 #include <fmt/format.h>
@@ -31,12 +31,10 @@ class Search {
   }
 
   void go_on() {
-    const Reaction& last = reactions_[path_.back()];
-    if (path_.size() == kMostHops || last.receiver_task == 0) return;
-    for (size_t n = 0; n < reactions_.size(); ++n) {
-      const Reaction& next = reactions_[n];
-      if (next.sender != last.receiver || next.sender_task == 0) continue;
-      const bool round = stands_before(next.receiver);
+    if (path_.size() == kMostHops) return;
+    for (const auto& [n, turns] : reactions_[path_.back()].onward) {
+      if (!turns.depends && turns.because.empty()) continue;
+      const bool round = stands_before(reactions_[n].receiver);
       path_.push_back(n);
       if (found_.all.size() < kMostChains)
         found_.all.push_back(of_path(round));
@@ -49,20 +47,23 @@ class Search {
 
   ReactionChain of_path(bool round) const {
     ReactionChain chain{path_, {}, {}, round};
-    const Reaction& first = reactions_[path_.front()];
-    std::optional<Time> time = first.from_input;
-    chain.because = first.because;
-    for (size_t n = 1; n < path_.size(); ++n) {
-      const Reaction &before = reactions_[path_[n - 1]], &next = reactions_[path_[n]];
-      if (!next.from_input && chain.because.empty()) chain.because = next.because;
-      if (!time || !next.from_input) {
-        time.reset();
-        continue;
-      }
-      *time += next.period + *next.from_telegram;
-      if (next.sender_task != before.receiver_task) *time += static_cast<Time>(2 * next.sender_turn) * kMillisecond;
+    Time time = 0;
+    const auto add = [&](const ProgramTurns& turns) {
+      if (chain.because.empty()) chain.because = turns.because;
+      time += static_cast<Time>(turns.ms) * kMillisecond;
+    };
+    add(reactions_[path_.front()].sent);
+    for (size_t n = 0; n < path_.size(); ++n) {
+      const Reaction& hop = reactions_[path_[n]];
+      for (const std::string* reason : {&hop.line_because, &hop.cycle_because})
+        if (chain.because.empty()) chain.because = *reason;
+      time += hop.period + hop.response;
+      if (n + 1 == path_.size()) break;
+      add(hop.onward.at(path_[n + 1]));
+      time += kMillisecond;
     }
-    chain.from_input = time;
+    add(reactions_[path_.back()].received);
+    if (chain.because.empty()) chain.from_input = time;
     return chain;
   }
 
@@ -77,7 +78,7 @@ ReactionChains reaction_chains(const std::vector<Reaction>& reactions) { return 
 
 std::string chains_text(const ReactionChains& chains, const std::vector<Reaction>& reactions) {
   if (chains.all.empty()) return {};
-  std::string text = "reactions over several stations, worst case, of what each program does within one turn of its loop\n";
+  std::string text = "reactions over several stations, worst case\n";
   for (const ReactionChain& chain : chains.all) {
     text += fmt::format("  input of {}", reactions[chain.hops.front()].sender);
     for (const size_t hop : chain.hops)

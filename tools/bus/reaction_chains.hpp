@@ -12,7 +12,7 @@ namespace ipos::tools {
 
 struct ReactionChain {
   std::vector<size_t> hops;  // numbers of reactions, two or more; the receiver of each is the sender of the next
-  std::optional<runtime::Time> from_input;  // of what each program does within one turn; none: `because`
+  std::optional<runtime::Time> from_input;  // none: `because`
   std::string because;
   bool is_round = false;  // the last receiver stands in the chain before: what goes round again takes as long again
 };
