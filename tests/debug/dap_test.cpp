@@ -337,6 +337,17 @@ TEST_F(Dap, TheConsoleTellsTheLastWriter) {
   EXPECT_EQ(who("aTable[2]")["body"]["result"], "nobody has changed aTable[2] = 0 so far");
   EXPECT_EQ(who("lNobody")["success"], false);
   EXPECT_EQ(sent_.size(), sent + 4) << "a response each, and no stop";
+  // The same of a variable in its list, and where a menu asks for its breakpoint.
+  const auto of_list = [&](const char* command, const char* name) {
+    return ask(command, {{"variablesReference", named}, {"name", name}})["body"];
+  };
+  EXPECT_EQ(of_list("who", "lFirst")["result"], who("lFirst")["body"]["result"]);
+  const Json info = of_list("dataBreakpointInfo", "lFirst");
+  EXPECT_FALSE(info["dataId"].is_null());
+  EXPECT_EQ(info["description"].get<std::string>().find("unit1.lFirst (lFirst: 0 -> 5 by unit1 task 1, main at P1.IPC:6 ("), 0U) << info;
+  EXPECT_EQ(of_list("dataBreakpointInfo", "aTable[2]")["description"], "unit1.aTable[2] (nobody has changed aTable[2] = 0 so far)");
+  EXPECT_EQ(ask("who", {{"name", "lNobody"}})["success"], false);
+  EXPECT_EQ(ask("setDataBreakpoints", {{"breakpoints", {{{"dataId", info["dataId"]}}}}})["body"]["breakpoints"][0]["verified"], true);
   EXPECT_EQ(ask("variables", {{"variablesReference", named}})["success"], true);
   EXPECT_EQ(ask("stackTrace", {{"threadId", thread}})["body"]["stackFrames"][0]["line"], 8);
   EXPECT_EQ(ask("evaluate", {{"expression", "who lFirst"}, {"context", "watch"}})["success"], false) << "the console alone";
@@ -630,7 +641,7 @@ TEST_F(DapOfAPlant, NoTextOfAnExceptionReachesTheClient) {
        {"setBreakpoints", "setInstructionBreakpoints", "dataBreakpointInfo", "setDataBreakpoints",
         "setExceptionBreakpoints", "setFunctionBreakpoints", "stackTrace", "scopes", "variables", "setVariable",
         "setExpression", "evaluate", "completions", "disassemble", "next", "stepIn", "threads", "source",
-        "breakpointLocations", "readMemory", "exceptionInfo"})
+        "breakpointLocations", "readMemory", "exceptionInfo", "who"})
     for (const char* key :
          {"source", "breakpoints", "name", "variablesReference", "filters", "threadId", "frameId", "start", "count",
           "value", "expression", "text", "column", "memoryReference", "instructionCount", "instructionOffset",

@@ -348,5 +348,23 @@ TEST(LanguageOfTheEditor, AnswersForTextsThatAreNotSaved) {
   EXPECT_THROW(server.answer("textDocument/nothing", Json::object(), texts), tools::serve::Mistake);
 }
 
+// As ipos test --mutate keeps them; looked for anew with each question, as it may run meanwhile.
+TEST(LanguageOfTheEditor, ShowsWhatNoTestNoticed) {
+  const std::string text = "long n;\nmain()\n{\n  n = 200;\n}\n";
+  std::vector<tools::Survivor> kept;
+  tools::serve::LanguageServer server({}, [&](const std::string& path, std::string_view of) {
+    return path == "/nowhere/SAW.IPC" && of == text ? kept : std::vector<tools::Survivor>();
+  });
+  const std::string uri = "file:///nowhere/SAW.IPC";
+  EXPECT_TRUE(server.answer("diagnostics", Json::object(), {{uri, text}})[uri].empty());
+  kept = {{4, 7, "200 became 220", true}};
+  const Json shown = server.answer("diagnostics", Json::object(), {{uri, text}})[uri];
+  ASSERT_EQ(shown.size(), 1U) << shown;
+  EXPECT_EQ(shown[0]["message"], "no test notices: 200 became 220");
+  EXPECT_EQ(shown[0]["severity"], 3);
+  EXPECT_EQ(shown[0]["range"], (Json{{"start", {{"line", 3}, {"character", 6}}}, {"end", {{"line", 3}, {"character", 9}}}}));
+  EXPECT_TRUE(server.answer("diagnostics", Json::object(), {{uri, text + "\n"}})[uri].empty()) << "another text by now";
+}
+
 }  // namespace
 }  // namespace ipos::tests

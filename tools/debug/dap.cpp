@@ -76,6 +76,7 @@ const std::vector<DapServer::Request>& DapServer::requests() {
       {"gotoTargets", &S::goto_targets},
       {"goto", &S::go_to},
       {"loadedSources", &S::loaded_sources, true},
+      {"who", &S::who},  // ours
       {"continue", &S::resume},
       {"next", &S::next},
       {"stepIn", &S::step_in},
@@ -176,7 +177,10 @@ void DapServer::carry_on(Stop stop) {
     if (const auto answer = who_.answer(*debugger_, stop)) {
       Json response = std::exchange(later_, nullptr);
       response["seq"] = ++seq_;
-      response["body"] = {{"result", *answer}, {"variablesReference", 0}};
+      if (response["command"] == "dataBreakpointInfo")
+        response["body"]["description"] = fmt::format("{} ({})", response["body"]["description"].get<std::string>(), *answer);
+      else
+        response["body"] = {{"result", *answer}, {"variablesReference", 0}};
       return send_(response);
     }
     stop = debugger_->return_to(who_.from());

@@ -85,6 +85,7 @@ class DapServer final : public FrontEnd {
   Json set_breakpoints(const Json& arguments);
   Json set_instruction_breakpoints(const Json& arguments);
   Json data_breakpoint_info(const Json& arguments);
+  Json who(const Json& arguments);
   Json set_data_breakpoints(const Json& arguments);
   Json set_exception_breakpoints(const Json& arguments);
   Json set_function_breakpoints(const Json& arguments);
@@ -129,6 +130,7 @@ class DapServer final : public FrontEnd {
   TaskRef task_of(const Json& arguments, const char* key) const;
   Json breakpoint_json(const Breakpoint& breakpoint) const;
   std::optional<ValuePlace> place_of_data(const std::string& id);
+  ValuePlace place_asked_for(const Json& arguments);
 
   // As the editor counts (initialize), and as ipos does: from 1.
   uint32_t line_of_client(const Json& line) const;

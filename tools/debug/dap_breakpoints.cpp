@@ -77,16 +77,24 @@ Json DapServer::set_instruction_breakpoints(const Json& arguments) {
   return {{"breakpoints", answer}};
 }
 
-Json DapServer::data_breakpoint_info(const Json& arguments) {
+// By its name in a list of variables, or by itself.
+ValuePlace DapServer::place_asked_for(const Json& arguments) {
   uint32_t station = 0;
   const auto reference = arguments.value("variablesReference", 0U);
   if (reference > 0 && reference <= references_.size()) station = references_[reference - 1].station;
   std::string name = arguments.at("name");
   if (reference > 0 && reference <= references_.size()) name = references_[reference - 1].name + name;
+  return evaluate_place(debugger().plant(), station, name);
+}
+
+// An editor asks when it opens a menu, so the last writer comes only where the way back is short.
+Json DapServer::data_breakpoint_info(const Json& arguments) {
+  constexpr uint64_t kShortWay = 1'000'000;  // commands; less than a second (docs/guide/debugging.md, How time goes back)
   try {
-    const ValuePlace place = evaluate_place(debugger().plant(), station, name);
-    const std::string whole = debugger_->plant().stations()[place.station]->config().name + "." +
-                              place.name.substr(place.station == station ? 0 : place.name.find('.') + 1);
+    const ValuePlace place = place_asked_for(arguments);
+    const std::string station = debugger_->plant().stations()[place.station]->config().name;
+    const std::string whole = place.name.starts_with(station + ".") ? place.name : station + "." + place.name;
+    if (debugger_->position().commands <= kShortWay) order_ = who_.ask(*debugger_, {}, place);  // carry_on() adds who it was
     return {{"dataId", Json(place).dump()},
             {"description", whole},
             {"accessTypes", Json::array({"write"})},
@@ -94,6 +102,11 @@ Json DapServer::data_breakpoint_info(const Json& arguments) {
   } catch (const ValueError& error) {
     return {{"dataId", nullptr}, {"description", error.what()}};
   }
+}
+
+Json DapServer::who(const Json& arguments) {
+  order_ = who_.ask(debugger(), {}, place_asked_for(arguments));
+  return Json::object();  // carry_on() answers
 }
 
 // What data_breakpoint_info() has given out; nothing when it is none of that.

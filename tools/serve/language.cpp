@@ -13,13 +13,14 @@ Json document(const std::string& uri) { return {{"uri", uri}}; }
 
 }  // namespace
 
-LanguageServer::LanguageServer(const CompileFlags& compile)
+LanguageServer::LanguageServer(const CompileFlags& compile, lsp::ReadSurvivors survivors)
     : server_(try_read_file, [this](const Json& message) {
         if (message.value("method", "") == "textDocument/publishDiagnostics")
           diagnostics_[message["params"]["uri"].get<std::string>()] = message["params"]["diagnostics"];
         else
           reply_ = message;
       }) {
+  server_.show_survivors(std::move(survivors));
   Json options{{"includeDirs", compile.include_dirs}, {"defines", compile.defines}, {"atomic", compile.atomic}};
   if (!compile.unit.empty()) options["unit"] = compile.unit;
   Json warnings = Json::array();

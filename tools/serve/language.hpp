@@ -11,8 +11,8 @@ namespace ipos::tools::serve {
 
 class LanguageServer final : public Language {
  public:
-  // As the plant's programs are compiled.
-  explicit LanguageServer(const CompileFlags& compile);
+  // As the plant's programs are compiled. `survivors`: what no test has noticed, where somebody keeps that.
+  explicit LanguageServer(const CompileFlags& compile, lsp::ReadSurvivors survivors = {});
 
   Json answer(const std::string& method, const Json& params, const Texts& texts) override;
 

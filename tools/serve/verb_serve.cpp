@@ -32,6 +32,7 @@
 #include "tools/serve/plant_ports.hpp"
 #include "tools/serve/server.hpp"
 #include "tools/serve/sockets.hpp"
+#include "tools/survivors/survivors.hpp"
 #include "tools/testing/debugged_test.hpp"
 
 namespace ipos::tools {
@@ -120,7 +121,7 @@ int run_host(ServeFlags flags, PlantInput input, const serve::SocketPair& socket
   serve::PlantFiles files(flags.file, flags.compile,
                           flags.session && flags.session->is_unpacked() ? serve::kFilesOfSession : why_read_only(flags),
                           flags.test);
-  serve::LanguageServer language(flags.compile);
+  serve::LanguageServer language(flags.compile, kept_survivors);
   debug::Debuggee what([input = std::move(input)] { return make_plant(input, runtime::FileUse::Look); });
   if (flags.test) what = serve::debuggee_of(*flags.test, flags.compile);
   serve::PlantHost host(std::move(what), title, IPOS_VERSION, {channel, clock, *copies, ports, files, language});

@@ -136,6 +136,20 @@ const lenses: Record<string, (uri: string, more?: unknown) => unknown> = {
   },
 };
 
+// In the menu of a variable; the answer stands in the debug console, too.
+async function whoChangedIt(menu?: launch.VariableInMenu): Promise<void> {
+  const asked = launch.whoArguments(menu);
+  const session = vscode.debug.activeDebugSession;
+  if (asked === undefined || session?.type !== "ipos") return;
+  try {
+    const { result } = (await session.customRequest("who", asked)) as { result: string };
+    vscode.debug.activeDebugConsole.appendLine(result);
+    void vscode.window.showInformationMessage(result);
+  } catch (error) {
+    void vscode.window.showErrorMessage(`ipos: ${error instanceof Error ? error.message : String(error)}`);
+  }
+}
+
 export async function activate(context: vscode.ExtensionContext): Promise<void> {
   context.subscriptions.push(
     vscode.workspace.registerTextDocumentContentProvider("ipos", headers),
@@ -143,6 +157,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     vscode.debug.registerDebugConfigurationProvider("ipos", configurations),
     vscode.tasks.registerTaskProvider("ipos", tasks),
     vscode.commands.registerCommand("ipos.restart", restartServer),
+    vscode.commands.registerCommand("ipos.who", whoChangedIt),
     ...Object.entries(lenses).map(([name, act]) => vscode.commands.registerCommand(name, act)),
     testExplorer(settings),
     vscode.workspace.onDidChangeConfiguration(async (change) => {

@@ -54,6 +54,18 @@ export function taskMatchers(definition: TaskDefinition): string[] {
   return definition.task === "mutate" ? [] : ["$ipos"];
 }
 
+// What the menu of a variable hands over, as far as it is used here.
+export interface VariableInMenu {
+  container?: { variablesReference?: number };
+  variable?: { name?: string };
+}
+
+// What `ipos dap` takes in its request `who`; nothing where the menu has no variable.
+export function whoArguments(menu: VariableInMenu | undefined): { variablesReference: number; name: string } | undefined {
+  const name = menu?.variable?.name;
+  return name === undefined ? undefined : { variablesReference: menu?.container?.variablesReference ?? 0, name };
+}
+
 export interface LaunchConfiguration {
   request?: string;
   program?: string;

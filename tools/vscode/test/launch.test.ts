@@ -146,6 +146,20 @@ test("snippets compile", (context) => {
   return undefined;
 });
 
+test("the menu of a variable asks for it in its list", () => {
+  assert.deepStrictEqual(launch.whoArguments({ container: { variablesReference: 7 }, variable: { name: "lCount" } }), {
+    variablesReference: 7,
+    name: "lCount",
+  });
+  assert.strictEqual(launch.whoArguments(undefined), undefined);
+  assert.strictEqual(launch.whoArguments({ container: {} }), undefined);
+  const { commands, menus } = (JSON.parse(read("package.json")) as {
+    contributes: { commands: { command: string }[]; menus: Record<string, { command: string }[]> };
+  }).contributes;
+  const named = commands.map((one) => one.command);
+  for (const menu of Object.values(menus)) for (const one of menu) assert.ok(named.includes(one.command), one.command);
+});
+
 test("the lenses start what they say", () => {
   assert.deepStrictEqual(launch.runCommand("/p/line.toml", settings).args, ["run", "/p/line.toml", "--watch"]);
   assert.deepStrictEqual(launch.runCommand("/p/A.IPC", settings).args.slice(0, 4), ["run", "/p/A.IPC", "--watch", "-Iinc"]);

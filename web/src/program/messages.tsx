@@ -10,7 +10,7 @@ function nameOf(uri: string): string | undefined {
 function typed(): BuildMessage[] {
   return Object.entries(diagnostics.value ?? {}).flatMap(([uri, all]) =>
     all.map((one) => ({
-      severity: one.severity === 1 ? "error" : "warning",
+      severity: one.severity === 1 ? "error" : one.severity === 2 ? "warning" : "note",
       file: nameOf(uri) ?? decodeURIComponent(uri.slice(uri.lastIndexOf("/") + 1)),
       line: one.range.start.line + 1,
       column: one.range.start.character + 1,
