@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 
+#include "compiler/preprocess/word_filter.hpp"
 #include "stdlib/spelling.hpp"
 
 namespace ipos::compiler {
@@ -38,14 +39,41 @@ bool opens_declarations(std::string_view word) {
   return is_any(word, {"VAR", "VAR_GLOBAL", "VAR_INPUT", "VAR_OUTPUT", "VAR_IN_OUT", "VAR_TEMP"});
 }
 
+bool is_plc_type(std::string_view word) {
+  return is_any(word, {"INT", "DINT", "SINT", "LINT", "UINT", "UDINT", "USINT", "BOOL", "BYTE", "WORD", "DWORD", "REAL", "LREAL", "TIME"}) ||
+         is_any(word, {"int8_t", "int16_t", "int32_t", "uint8_t", "uint16_t", "uint32_t"});
+}
+
+bool opens_function(std::string_view word) {
+  return is_any(word, {"FUNCTION", "FUNCTION_BLOCK", "PROGRAM", "ORGANIZATION_BLOCK"});
+}
+
+constexpr WordFilter kNames = [] {
+  WordFilter words;
+  for (const std::string_view word : {"VAR", "VAR_GLOBAL", "VAR_INPUT", "VAR_OUTPUT", "VAR_IN_OUT", "VAR_TEMP", "FUNCTION", "FUNCTION_BLOCK",
+                                      "PROGRAM", "ORGANIZATION_BLOCK", "INT", "DINT", "SINT", "LINT", "UINT", "UDINT", "USINT", "BOOL", "BYTE",
+                                      "WORD", "DWORD", "REAL", "LREAL", "TIME", "int8_t", "int16_t", "uint8_t", "uint16_t"})
+    words.add(word);
+  return words;
+}();
+
+// 5s, 100ms: digits and a unit of time.
+bool is_time(std::string_view number) {
+  return (number.back() == 's' || number.back() == 'S') && number.find_first_of("xXbB") == std::string_view::npos;
+}
+
 // Each form has one of these tokens. Most programs have none.
-bool may_be_of_form(const Token& token) {
+bool may_be_of_form(const Token& token, TokenKind next) {
   switch (token.kind) {
+    case TokenKind::LeftParen: return next == TokenKind::Star;
+    case TokenKind::Dot: return next == TokenKind::Dot;
     case TokenKind::Hash:
     case TokenKind::Enum:
     case TokenKind::Const: return true;
-    case TokenKind::Number: return token.text[0] == '.';
-    case TokenKind::Name: return (token.text[0] == 'V' || token.text[0] == 'v') && opens_declarations(token.text);
+    case TokenKind::Number: return token.text[0] == '.' || is_time(token.text);
+    case TokenKind::Name:
+      return kNames.may_have(token.text) &&
+             (opens_declarations(token.text) || is_plc_type(token.text) || opens_function(token.text));
     default: return false;
   }
 }
@@ -99,7 +127,8 @@ class Forms {
       if (now == TokenKind::LeftBrace) ++depth_;
       if (now == TokenKind::RightBrace) --depth_;
       if (directive || !begins_form(now) ||
-          !(based_number() || bit() || constants_of_enum() || constant() || declarations() || known_name()))
+          !(comment() || range() || time() || based_number() || bit() || constants_of_enum() || constant() || declarations() ||
+            declaration() || foreign_type() || function() || known_name()))
         out_.push_back(tokens_[at_++]);
     }
     return std::move(out_);
@@ -120,7 +149,7 @@ class Forms {
   // What every form below begins with; most tokens of a program are something else.
   static bool begins_form(TokenKind kind) {
     return kind == TokenKind::Name || kind == TokenKind::Number || kind == TokenKind::Enum || kind == TokenKind::Const ||
-           kind == TokenKind::Static;
+           kind == TokenKind::Static || kind == TokenKind::LeftParen || kind == TokenKind::Dot;
   }
 
   // In place of the token at the distance.
@@ -129,6 +158,91 @@ class Forms {
     made.kind = as;
     made.text = texts_.emplace_back(std::move(words));
     out_.push_back(made);
+  }
+
+  // (* text *): no expression has a '*' before a ')'.
+  bool comment() {
+    if (kind(0) != TokenKind::LeftParen || kind(1) != TokenKind::Star || !touches(1)) return false;
+    constexpr size_t kLongest = 500;
+    for (size_t n = 1; n < kLongest && kind(n) != TokenKind::End; ++n)
+      if (kind(n) == TokenKind::Star && kind(n + 1) == TokenKind::RightParen && touches(n + 1)) {
+        report(2, "(*", "comments are '/* ... */' or '// ...'");
+        at_ += n + 2;
+        return true;
+      }
+    return false;
+  }
+
+  // case 1 ... 3:
+  bool range() {
+    if (kind(0) != TokenKind::Dot || kind(1) != TokenKind::Dot || out_.size() < 2 || out_.back().kind != TokenKind::Number ||
+        out_[out_.size() - 2].kind != TokenKind::Case)
+      return false;
+    const size_t last = kind(2) == TokenKind::Dot ? 3 : 2;
+    if (kind(last) != TokenKind::Number || kind(last + 1) != TokenKind::Colon) return false;
+    report(last, "...", fmt::format("each value has a case of its own: write 'case {}: ... case {}:'", out_.back().text, text(last)));
+    at_ += last + 1;
+    return true;
+  }
+
+  // 5s, 100ms.
+  bool time() {
+    if (kind(0) != TokenKind::Number || !is_time(text(0))) return false;
+    const std::optional<uint32_t> number = milliseconds_of(text(0));
+    if (!number) return false;
+    report(1, text(0), fmt::format("times are numbers of milliseconds: write {}", *number));
+    put(0, TokenKind::Number, fmt::format("{}", *number));
+    ++at_;
+    return true;
+  }
+
+  // What is declared as a variable, or as a type behind a '}', somewhere in the program.
+  bool declared(std::string_view name) const {
+    for (size_t n = 1; n < tokens_.size(); ++n)
+      if (tokens_[n].text == name && (tokens_[n - 1].kind == TokenKind::Long || tokens_[n - 1].kind == TokenKind::Comma ||
+                                      tokens_[n - 1].kind == TokenKind::RightBrace))
+        return true;
+    return false;
+  }
+  bool at_begin() const {
+    return out_.empty() || out_.back().kind == TokenKind::Semicolon || out_.back().kind == TokenKind::RightBrace ||
+           out_.back().kind == TokenKind::LeftBrace;
+  }
+
+  // a : DINT := 5;
+  bool declaration() {
+    if (depth_ != 0 || kind(0) != TokenKind::Name || kind(1) != TokenKind::Colon || !at_begin() ||
+        (!is_type(kind(2)) && !(kind(2) == TokenKind::Name && is_plc_type(text(2)))))
+      return false;
+    size_t last = 3;
+    while (kind(last) != TokenKind::Semicolon && kind(last) != TokenKind::LeftBrace && kind(last) != TokenKind::End) ++last;
+    if (kind(last) != TokenKind::Semicolon) return false;
+    report(3, fmt::format("{} : {}", text(0), text(2)), fmt::format("write 'long {};'", text(0)));
+    put(0, TokenKind::Long, "long");
+    out_.push_back(tokens_[at_]);
+    at_ += last;
+    return true;
+  }
+
+  // INT x;
+  bool foreign_type() {
+    if (kind(0) != TokenKind::Name || kind(1) != TokenKind::Name || !at_begin() || !is_plc_type(text(0)) || declared(text(0))) return false;
+    if (kind(2) != TokenKind::Semicolon && kind(2) != TokenKind::Comma && kind(2) != TokenKind::Assign && kind(2) != TokenKind::LeftBracket)
+      return false;
+    diagnostics_.report(Diag::ForeignType, tokens_[at_].span, {std::string(text(0))});
+    put(0, TokenKind::Long, "long");
+    ++at_;
+    return true;
+  }
+
+  // FUNCTION_BLOCK name
+  bool function() {
+    if (depth_ != 0 || kind(0) != TokenKind::Name || kind(1) != TokenKind::Name || !opens_function(text(0)) || !at_begin() || declared(text(0)))
+      return false;
+    report(1, text(0), fmt::format("write '{}() {{ ... }}'", text(1)));
+    at_ += 2;
+    if (kind(0) == TokenKind::Semicolon) ++at_;
+    return true;
   }
 
   // 16#FF, 2#1010, T#1s.
@@ -167,6 +281,18 @@ class Forms {
     }
   }
 
+  // E1.0, I1.0, A4.0, Q4.0 of a PLC.
+  static std::string_view plc_signal(std::string_view object) {
+    if (object.size() < 2 || object.find_first_not_of("0123456789", 1) != std::string_view::npos) return {};
+    switch (object[0]) {
+      case 'E':
+      case 'I': return "inputs are 'DI00', 'DI01' and so on of '#include <io.h>', or of <iob.h> for MOVIDRIVE B";
+      case 'A':
+      case 'Q': return "outputs are set by 'SET_DO01;', 'CLEAR_DO01;' and so on of '#include <io.h>', or of <iob.h> for MOVIDRIVE B";
+      default: return {};
+    }
+  }
+
   // a.3, H481.1: the scanner has `.3` as a number.
   bool bit() {
     if (kind(0) != TokenKind::Number || text(0)[0] != '.' || !touches(0) || out_.empty() ||
@@ -182,6 +308,7 @@ class Forms {
     std::string advice = fmt::format("bit {} of it is '{} & 0x{:X}'", *number, object, 1U << *number);
     if (is_argument) advice = fmt::format("write '{}({}, {})'", out_[begin - 2].text, object, *number);
     if (is_set) advice = fmt::format("write '{}({}, {})'", text(2) == "0" ? "_BitClear" : "_BitSet", object, *number);
+    if (const std::string_view plc = plc_signal(object); !plc.empty() && !declared(object)) advice = plc;
     report(1, object + std::string(text(0)), std::move(advice));
     if (is_argument) {
       put(0, TokenKind::Comma, ",");
@@ -324,7 +451,10 @@ class Forms {
 }  // namespace
 
 std::span<const Token> without_foreign_forms(std::span<const Token> tokens, ForeignForms& changed, Diagnostics& diagnostics) {
-  if (std::none_of(tokens.begin(), tokens.end(), may_be_of_form)) return tokens;
+  bool found = false;
+  for (size_t n = 0; n < tokens.size() && !found; ++n)
+    found = may_be_of_form(tokens[n], n + 1 < tokens.size() ? tokens[n + 1].kind : TokenKind::End);
+  if (!found) return tokens;
   changed.tokens = Forms(tokens, changed.texts, diagnostics).run();
   return changed.tokens;
 }

@@ -37,7 +37,9 @@ constexpr Infix kInfix[] = {{"and", TokenKind::AndAnd, "write '&&', or '&' for b
                             {"xor", TokenKind::Xor, "write '^'"},
                             {"mod", TokenKind::Percent, "write '%'"},
                             {"div", TokenKind::Slash, "write '/'"}};
-constexpr std::string_view kBlockEnds[] = {"end_if", "end_while", "end_for", "end_case", "endif"};
+constexpr std::string_view kBlockEnds[] = {"end_if",     "end_while",    "end_for",            "end_case",   "endif",
+                                           "end_repeat", "end_function", "end_function_block", "end_program"};
+constexpr std::string_view kElseIfs[] = {"elseif", "elsif", "elif"};
 
 // Words that mean something in another spelling.
 constexpr WordFilter kSpellings = [] {
@@ -45,6 +47,7 @@ constexpr WordFilter kSpellings = [] {
   for (const Keyword& row : kKeywords) words.add(row.spelling);
   for (const Infix& row : kInfix) words.add(row.word);
   for (const std::string_view word : kBlockEnds) words.add(word);
+  for (const std::string_view word : kElseIfs) words.add(word);
   for (const std::string_view word : {"not", "then", "begin", "end"}) words.add(word);
   return words;
 }();
@@ -129,8 +132,57 @@ class Translator {
     return true;
   }
 
+  // A sign that does not stand there, at the place of the token that comes next.
+  void insert(TokenKind kind) {
+    if (same_) begin_change();
+    out_.push_back(tokens_[std::min(at_, tokens_.size() - 1)]);
+    out_.back().kind = kind;
+  }
+
+  // CASE a OF 1: ... END_CASE
+  bool case_of(const Token& token) {
+    if (depth_ <= 0 || !equal_but_for_case(token.text, "case") || !is_word_or_number(next()) || next(2) != TokenKind::Name ||
+        !equal_but_for_case(tokens_[at_ + 2].text, "of"))
+      return false;
+    foreign(TokenKind::Switch, token.text, "write 'switch (" + std::string(tokens_[at_ + 1].text) + ") { case 1: ... break; }'");
+    insert(TokenKind::LeftParen);
+    take(kind(at_));
+    insert(TokenKind::RightParen);
+    take(TokenKind::LeftBrace);  // in place of OF
+    ++depth_;
+    ++cases_;
+    return true;
+  }
+  bool case_label() {
+    if (cases_ == 0 || !ends_statement(before()) || next() != TokenKind::Colon) return false;
+    insert(TokenKind::Case);
+    take(TokenKind::Number);
+    return true;
+  }
+
+  // The name of the command in whose brackets the next token stands, or nothing.
+  bool in_command() const {
+    int level = 0;
+    for (size_t n = at_; n-- > 1;) {
+      if (kind(n) == TokenKind::RightParen) ++level;
+      if (kind(n) == TokenKind::Semicolon || kind(n) == TokenKind::LeftBrace) return false;
+      if (kind(n) == TokenKind::LeftParen && --level < 0) return kind(n - 1) == TokenKind::Name && tokens_[n - 1].text.starts_with('_');
+    }
+    return false;
+  }
+  // _MoviLink(&m)
+  bool address() {
+    if ((before() != TokenKind::LeftParen && before() != TokenKind::Comma) || next() != TokenKind::Name || !in_command()) return false;
+    const std::string name(tokens_[at_ + 1].text);
+    foreign(TokenKind::And, "&" + name, "statements take the name alone: write '" + name + "'");
+    out_.pop_back();
+    return true;
+  }
+
   // `:=` and `<>`, written together.
   bool sign(const Token& token) {
+    if (token.kind == TokenKind::And) return address();
+    if (token.kind == TokenKind::Number) return case_label();
     if (token.kind != TokenKind::Colon && token.kind != TokenKind::Less) return false;
     if (at_ + 1 >= tokens_.size() || tokens_[at_ + 1].spaced || tokens_[at_ + 1].line_start) return false;
     if (token.kind == TokenKind::Colon && next() == TokenKind::Assign)
@@ -143,7 +195,7 @@ class Translator {
   bool word(const Token& token) {
     if (before() == TokenKind::Dot || types_.contains(token.text)) return false;
     const bool known = kSpellings.may_have(token.text);
-    return (known && plc_word(token)) || keyword(token, known);
+    return (known && (case_of(token) || plc_word(token))) || keyword(token, known);
   }
 
   // A bracket with something in it: no call of a function of the program has that.
@@ -166,6 +218,13 @@ class Translator {
         return foreign(infix.kind, token.text, infix.advice);
     if (equal_but_for_case(token.text, "not") && !is_operand_end(before()) && operand)
       return foreign(TokenKind::Not, token.text, "write '!', or '~' for bits");
+    const bool else_if = std::any_of(std::begin(kElseIfs), std::end(kElseIfs),
+                                     [&](std::string_view each) { return equal_but_for_case(token.text, each); });
+    if (else_if && ends_statement(before()) && operand) {
+      foreign(TokenKind::Else, token.text, "write 'else if'");
+      insert(TokenKind::If);
+      return true;
+    }
     if (equal_but_for_case(token.text, "then") && is_operand_end(before()) && statement_at(at_ + 1)) {
       foreign(token.kind, token.text, "leave it out");
       out_.pop_back();
@@ -188,9 +247,13 @@ class Translator {
     const bool block_end =
         std::any_of(std::begin(kBlockEnds), std::end(kBlockEnds),
                     [&](std::string_view end) { return equal_but_for_case(token.text, end); });
-    if (!block_end || next() != TokenKind::Semicolon || !ends_statement(before())) return false;
-    foreign(token.kind, token.text, "a block ends with '}'", 2);
-    out_.pop_back();
+    const bool semicolon = next() == TokenKind::Semicolon;
+    const bool last = semicolon || next() == TokenKind::RightBrace || next() == TokenKind::End || statement_at(at_ + 1);
+    if (!block_end || !last || !(ends_statement(before()) || before() == TokenKind::End)) return false;
+    const bool closes = cases_ > 0 && equal_but_for_case(token.text, "end_case");
+    foreign(closes ? TokenKind::RightBrace : token.kind, token.text, "a block ends with '}'", semicolon ? 2 : 1);
+    if (!closes) out_.pop_back();
+    if (closes) --cases_, --depth_;
     return true;
   }
 
@@ -262,6 +325,7 @@ class Translator {
   size_t at_ = 0;
   int depth_ = 0;
   int begun_ = 0;  // BEGIN without END so far
+  int cases_ = 0;  // CASE ... OF without END_CASE so far
   bool directive_ = false;
 };
 

@@ -112,6 +112,10 @@ bool TokenFeed::explain_inside(const Expected& expected) {
       error.notes.push_back({tokens_[*semicolon].span, "this ';' is all that the 'if' before it does; leave it out"});
     return true;
   }
+  if (const auto comma = comma_of_head(); comma && expected.has(Kind::S_Semicolon)) {
+    diagnostics_.report(Diag::ExpectedBefore, tokens_[*comma].span, {"';'", "','"});
+    return true;
+  }
   if (previous.kind == TokenKind::Sizeof) {
     diagnostics_.report(Diag::SizeOf, previous.span);
     return true;
@@ -154,6 +158,23 @@ std::optional<size_t> TokenFeed::ended_if() const {
     if (open > 0 && tokens_[open - 1].kind == TokenKind::If) return n;
   }
   return std::nullopt;
+}
+
+// The first ',' of `for (a, b, c)`, at whose ')' the error is.
+std::optional<size_t> TokenFeed::comma_of_head() const {
+  if (found().kind != TokenKind::RightParen || open_.empty() || open_.back().kind != TokenKind::LeftParen) return std::nullopt;
+  const size_t open = open_.back().token;
+  if (open == 0 || tokens_[open - 1].kind != TokenKind::For) return std::nullopt;
+  int level = 0;
+  std::optional<size_t> comma;
+  for (size_t n = open + 1; n < last_; ++n) {
+    const TokenKind kind = tokens_[n].kind;
+    if (kind == TokenKind::Semicolon) return std::nullopt;
+    if (kind == TokenKind::LeftParen) ++level;
+    if (kind == TokenKind::RightParen) --level;
+    if (kind == TokenKind::Comma && level == 0 && !comma) comma = n;
+  }
+  return comma;
 }
 
 bool TokenFeed::explain_outside(const Expected& expected) {

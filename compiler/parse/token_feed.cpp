@@ -2,7 +2,11 @@
 // here and delivered as something harmless, so that they cause no second message.
 #include "compiler/parse/token_feed.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <utility>
 
 #include "compiler/preprocess/number.hpp"
@@ -56,8 +60,8 @@ void TokenFeed::stray() {
 }
 
 // What is wrong in the token itself. After an error the same token may come again.
-void TokenFeed::tell(Diag diag, Span place, std::vector<std::string> words) {
-  if (last_ >= told_) diagnostics_.report(diag, place, std::move(words));
+Diagnostic* TokenFeed::tell(Diag diag, Span place, std::vector<std::string> words) {
+  return last_ >= told_ ? &diagnostics_.report(diag, place, std::move(words)) : nullptr;
 }
 
 Symbol TokenFeed::symbol(const Token& token) {
@@ -116,7 +120,11 @@ ast::Number TokenFeed::number(const Token& token) {
     case NumberForm::Fraction: diag = Diag::FloatConstant; break;
     case NumberForm::TooLarge: diag = Diag::NumberTooLarge; break;
   }
-  tell(diag, token.span, {std::string(token.text)});
+  Diagnostic* message = tell(diag, token.span, {std::string(token.text)});
+  const double seconds = std::strtod(std::string(token.text).c_str(), nullptr);
+  if (message != nullptr && parsed.form == NumberForm::Fraction && before(1).kind == TokenKind::LeftParen &&
+      before(2).text == "_Wait" && seconds < 1000)
+    message->notes.push_back({{}, fmt::format("'_Wait' counts milliseconds: {} s are {}", token.text, std::lround(seconds * 1000))});
   return {0};
 }
 

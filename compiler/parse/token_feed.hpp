@@ -50,7 +50,7 @@ class TokenFeed {
   // token_feed.cpp
   Symbol symbol(const Token& token);
   ast::Number number(const Token& token);
-  void tell(Diag diag, Span place, std::vector<std::string> words = {});
+  Diagnostic* tell(Diag diag, Span place, std::vector<std::string> words = {});
   void stray();
   void accepted(size_t token);
   void close(TokenKind opener);
@@ -60,6 +60,7 @@ class TokenFeed {
   // syntax_error.cpp
   void explain(const Expected& expected);
   std::optional<size_t> ended_if() const;
+  std::optional<size_t> comma_of_head() const;
   bool explain_inside(const Expected& expected);
   bool explain_outside(const Expected& expected);
   bool explain_parameters();

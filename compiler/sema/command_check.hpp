@@ -55,6 +55,7 @@ class CommandCheck {
 
   // waiting_command.cpp
   void check_interrupt(const Point& point);
+  void check_mask(const Point& point, uint32_t first);
   void check_waiting(const Point& point);
   void check_lacking(const Point& point);
 

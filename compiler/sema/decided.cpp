@@ -17,6 +17,7 @@ using checked::ExprPtr;
 struct Outcome {
   bool truth = false;
   bool plain = false;  // by the value of a constant, which may be a switch; else by the form of the condition
+  const char* meant = nullptr;  // a question: what is likely to be meant
 };
 
 // The bits a value may have set: those of a mask, or bit 0 of what is 0 or 1.
@@ -110,7 +111,7 @@ std::optional<Outcome> contradiction(const ExprPtr& expr, BinaryOp joint) {
         for (const int64_t at : {value - 1, value, value + 1})
           possible = possible || (at >= INT32_MIN && at <= INT32_MAX && all[n].holds(at) == wanted &&
                                   all[earlier].holds(at) == wanted);
-      if (!possible) return Outcome{!wanted, false};
+      if (!possible) return Outcome{!wanted, false, wanted ? "is '||' meant?" : "is '&&' meant?"};
     }
   return std::nullopt;
 }
@@ -161,7 +162,8 @@ void check_decided(const ast::Expr& text, const ExprPtr& condition, ConditionOf 
   const bool endless = known->truth && use != ConditionOf::Choice && constant_value(condition) != nullptr;
   const bool once = !known->truth && use == ConditionOf::LoopEnd && constant_value(condition) != nullptr;
   if (endless || once) return;
-  context.diagnostics.report(Diag::DecidedCondition, text.span, {known->truth ? "always" : "never"});
+  Diagnostic& message = context.diagnostics.report(Diag::DecidedCondition, text.span, {known->truth ? "always" : "never"});
+  if (known->meant != nullptr) message.notes.push_back({{}, known->meant});
 }
 
 }  // namespace ipos::compiler

@@ -7,6 +7,7 @@
 #include "compiler/sema/decided.hpp"
 #include "compiler/sema/fold.hpp"
 #include "stdlib/language_tables.hpp"
+#include "stdlib/parameters.hpp"
 
 namespace ipos::compiler {
 
@@ -334,6 +335,13 @@ void ExpressionChecker::unknown_name(std::string_view name, Span span, bool func
   if (const auto place = context_.tree->left_out.find(name); place != context_.tree->left_out.end()) {
     message.notes.push_back({place->second.name, fmt::format("'{}' stands here, in a part that is left out", name)});
     message.notes.push_back({place->second.condition, "by this condition"});
+    return;
+  }
+  const stdlib::Parameter* parameter =
+      !function && name.starts_with('P') ? stdlib::parameter_table(context_.unit).find(name) : nullptr;
+  if (parameter != nullptr && name.size() == 4 && parameter->number == name.substr(1)) {
+    message.notes.push_back({{}, fmt::format("parameters are no variables: '_MoviLink' reads and writes {}, which has index {}",
+                                             name, parameter->index)});
     return;
   }
   // A search of all names for each of many unknown ones would take long, and nobody reads it.

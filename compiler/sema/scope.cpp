@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 
 #include "stdlib/header_names.hpp"
 #include "stdlib/language_tables.hpp"
@@ -14,6 +15,40 @@ namespace {
 
 Span span_of(const Entity& entity) {
   return std::visit([](const auto* row) { return row->span; }, entity);
+}
+
+struct ForeignName {
+  std::string_view name;
+  std::string_view advice;
+};
+constexpr ForeignName kForeignFunctions[] = {
+    {"memcpy", "'_Copy( to, from, n )' copies variables, and 'a = b;' a whole structure or array"},
+    {"memmove", "'_Copy( to, from, n )' copies variables, and 'a = b;' a whole structure or array"},
+    {"delay", "'_Wait( ms )' waits"},
+    {"sleep", "'_Wait( ms )' waits"},
+    {"usleep", "'_Wait( ms )' waits"},
+    {"msleep", "'_Wait( ms )' waits"},
+    {"abs", "write 'if (a < 0) a = -a;'"},
+};
+constexpr ForeignName kForeignNames[] = {
+    {"true", "1 is true, as is any value except 0"}, {"false", "0 is false"}, {"null", "write 0"}, {"nullptr", "write 0"}};
+
+// Flags of a PLC: MW10, DB5.
+bool is_plc_memory(std::string_view name) {
+  static constexpr std::string_view kAreas[] = {"M", "MB", "MW", "MD", "DB", "DBB", "DBW", "DBD"};
+  const size_t digits = name.find_first_of("0123456789");
+  return digits != std::string_view::npos && name.find_first_not_of("0123456789", digits) == std::string_view::npos &&
+         std::find(std::begin(kAreas), std::end(kAreas), name.substr(0, digits)) != std::end(kAreas);
+}
+
+// What stands for a name of C or of a PLC language; nothing where it is none.
+std::string foreign_advice(std::string_view name, bool function) {
+  const std::span<const ForeignName> rows = function ? std::span<const ForeignName>(kForeignFunctions) : std::span<const ForeignName>(kForeignNames);
+  for (const ForeignName& row : rows)
+    if (stdlib::equal_but_for_case(name, row.name)) return std::string(row.advice);
+  if (!function && is_plc_memory(name))
+    return fmt::format("variables have the names that you declare, 'long {};', or their numbers, H10", name);
+  return {};
 }
 
 }  // namespace
@@ -108,6 +143,11 @@ void Scope::explain_unknown(Diagnostic& diagnostic, std::string_view name, bool 
                                         : std::string("a constant of the standard headers");
     diagnostic.notes.push_back(
         {{}, fmt::format("'{}' is {}; '#include <{}>' makes it known", name, what, known->header)});
+    return;
+  }
+
+  if (std::string advice = foreign_advice(name, function); !advice.empty()) {
+    diagnostic.notes.push_back({{}, std::move(advice)});
     return;
   }
 

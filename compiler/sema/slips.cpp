@@ -112,6 +112,16 @@ class Slips {
   void check(const ast::Assign& node, Span span) {
     if (!node.op && same(*node.target, *node.value) && !of_the_unit(*node.target))
       diagnostics_.report(Diag::SelfAssignment, span);
+    const auto* step = node.op ? nullptr : std::get_if<ast::Step>(&node.value->node);
+    if (step != nullptr && same(*node.target, *step->operand) && !of_the_unit(*node.target)) check_step(*step, *node.value, span);
+  }
+
+  // i = i++: the old value comes last.
+  void check_step(const ast::Step& step, const ast::Expr& value, Span span) {
+    const bool up = step.op == ast::StepOp::PostIncrement;
+    if (!up && step.op != ast::StepOp::PostDecrement) return;
+    diagnostics_.report(Diag::SelfAssignment, span)
+        .notes.push_back({value.span, up ? "'++' alone is the statement that adds 1" : "'--' alone is the statement that takes 1 away"});
   }
 
   // The blanks before a statement that is the first of its line.

@@ -1,6 +1,9 @@
 // VARINT, commands that wait in interrupt routines or longer than the watchdog, and commands that a unit does not have.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "compiler/sema/command_check.hpp"
 #include "compiler/sema/command_writes.hpp"
 
@@ -20,6 +23,8 @@ struct ElementRange {
   int32_t most;
 };
 constexpr ElementRange kRanges[] = {{VarintMember::Control, "Control", 2}, {VarintMember::IntNum, "IntNum", 3}, {VarintMember::Mode, "Mode", 9}, {VarintMember::Priority, "Priority", 10}};
+
+constexpr int32_t kModesOfMasks[] = {1, 2, 3, 8};  // VI_CHANGED, VI_RISING, VI_FALLING, VI_ANY
 
 int32_t word(const ConstantFlow::Point& point, size_t argument) {
   const int32_t* known = std::get_if<int32_t>(&point.call.arguments[argument]);
@@ -54,6 +59,7 @@ void CommandCheck::check_interrupt(const Point& point) {
     warn(Diag::InterruptOff, point.expr.span,
          {fmt::format("Priority of '{}' is never set, and 0 switches the interrupt off; 1 to 10 switch it on",
                       name_of(first))});
+  check_mask(point, first);
   const Opcode start = control->value == 1 ? Opcode::Task2 : Opcode::Task;
   for (const ProgramRoot& root : roots_.roots)
     if (root.start == start) return;
@@ -61,6 +67,17 @@ void CommandCheck::check_interrupt(const Point& point) {
   warn(Diag::InterruptOff, place(*control, point),
        {fmt::format("Control {} takes the interrupt to task {}, which nothing starts", control->value,
                     control->value + 1)});
+}
+
+// A mask without a bit changes, rises, falls and is there never.
+void CommandCheck::check_mask(const Point& point, uint32_t first) {
+  const KnownValue* mode = flow_.only(first + VarintMember::Mode);
+  const KnownValue* mask = flow_.only(first + VarintMember::CompareVar);
+  const bool masks = mode != nullptr && std::find(std::begin(kModesOfMasks), std::end(kModesOfMasks), mode->value) != std::end(kModesOfMasks);
+  if (!masks || mask == nullptr || mask->value != 0) return;
+  warn(Diag::InterruptOff, place(*mask, point),
+       {fmt::format("CompareVar of '{}' {}, a mask without a bit; bit n is 1 << n", name_of(first),
+                    mask->assigned() ? "is 0" : "is never set, so it is 0")});
 }
 
 void CommandCheck::check_waiting(const Point& point) {
@@ -87,8 +104,11 @@ void CommandCheck::check_waiting(const Point& point) {
     waits = opcode == Opcode::Go0 ? word(point, 0) % 2 == 0 && word(point, 0) != 8 : word(point, 0) == 1;
   if (!waits) return;
   if (Diagnostic* message =
-          warn(Diag::WaitInInterrupt, point.expr.span, {context_.program.functions[root.function].name}))
+          warn(Diag::WaitInInterrupt, point.expr.span, {context_.program.functions[root.function].name})) {
     message->notes.push_back({root.place, "it is installed here"});
+    message->notes.push_back({{}, is_travel(opcode) ? "the forms with NOWAIT or NW only start the travel"
+                                                    : "a task can do it: set a variable here that the task looks at"});
+  }
 }
 
 void CommandCheck::check_lacking(const Point& point) {

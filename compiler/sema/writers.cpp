@@ -87,7 +87,9 @@ class Writers {
         roots = more;
         most = lanes(more);
       }
-    if (!roots.empty()) context_.diagnostics.report(Diag::SeveralWriters, variable.span, {variable.name, list(roots)});
+    if (roots.empty()) return;
+    Diagnostic& message = context_.diagnostics.report(Diag::SeveralWriters, variable.span, {variable.name, list(roots)});
+    message.notes.push_back({{}, "what one of them writes may be lost: give each a variable of its own, or let one of them write it"});
   }
 
   // x = f(x) in several commands. One command reads and writes at once: x = x + 1.

@@ -135,6 +135,11 @@ const MachineMistake kMachineMistakes[] = {
      "v.CompareVar = 1; v.Mode = VI_EQ;\n_SetVarInterrupt(v, OnX);\nwhile (1) x = H483; }\nOnX() { H300++; }\n"
      "Other() { while (1) _Wait(5); }",
      {"7 W0279"}},
+    {"MaskWithoutABit",
+     "#include <constb.h>\nVARINT v; long x;\nmain() {\n_SetTask2(T2_START, Other);\nv.Control = 1; v.SrcVar = numof(x);\n"
+     "v.Mode = VI_RISING; v.Priority = 3;\n_SetVarInterrupt(v, OnX);\nwhile (1) x = H483; }\nOnX() { H300++; }\n"
+     "Other() { while (1) _Wait(5); }",
+     {"7 W0279"}},
     {"TaskOfTheInterruptNeverRuns",
      "#include <constb.h>\nVARINT v; long x;\nmain() {\n_SetTask2(T2_START, Other);\nv.Control = 2;\nv.SrcVar = numof(x);\n"
      "v.CompareVar = 1; v.Mode = VI_EQ; v.Priority = 3;\n_SetVarInterrupt(v, OnX);\nwhile (1) x = H483; }\n"

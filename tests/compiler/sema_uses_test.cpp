@@ -197,29 +197,38 @@ TEST(Calls, OfWhichNoneReachesAFunction) {
 TEST(Writers, OfOneVariable) {
   const auto said = [](const std::string& text) { return all_texts(text, nullptr, "several-writers"); };
   EXPECT_EQ(said("long n; main() { _SetTask2(1, t); n = 1; } t() { n = 2; }"),
-            "'n' is written by 'main' and 't'\n");
+            "'n' is written by 'main' and 't'\n"
+            "  what one of them writes may be lost: give each a variable of its own, or let one of them write it\n");
   EXPECT_EQ(
       said("long n; main() { _SetTask2(1, t); _SetInterrupt(1, u); n = 1; } t() { n = 2; } u() { n++; }"),
-      "'n' is written by 'main', 't' and 'u'\n");
+      "'n' is written by 'main', 't' and 'u'\n"
+            "  what one of them writes may be lost: give each a variable of its own, or let one of them write it\n");
   EXPECT_EQ(said("long n; main() { _SetTask2(1, t); f(); } t() { f(); } f() { n = 2; }"),
-            "'n' is written by 'main' and 't'\n");
+            "'n' is written by 'main' and 't'\n"
+            "  what one of them writes may be lost: give each a variable of its own, or let one of them write it\n");
   EXPECT_EQ(said("long n; main() { f(); n = 1; } f() { n = 2; }"), "");
   EXPECT_EQ(said("long n; main() { _SetTask2(1, t); H0 = n; } t() { n = 2; }"), "");
   EXPECT_EQ(said("long v[3]; main() { _SetTask2(1, t); v[0] = 1; v[1] = 1; } t() { v[2] = 2; }"), "");
   EXPECT_EQ(said("long v[3]; main() { _SetTask2(1, t); v[0] = 1; v[2] = 1; } t() { v[2] = 2; }"),
-            "'v' is written by 'main' and 't'\n");
+            "'v' is written by 'main' and 't'\n"
+            "  what one of them writes may be lost: give each a variable of its own, or let one of them write it\n");
   EXPECT_EQ(said("long v[3]; main() { _SetTask2(1, t); v[0] = 1; v[2] = 1; } t() { v[H0] = 2; }"),
-            "'v' is written by 'main' and 't'\n");
+            "'v' is written by 'main' and 't'\n"
+            "  what one of them writes may be lost: give each a variable of its own, or let one of them write it\n");
   EXPECT_EQ(said("long v[3], w; main() { _SetTask2(1, t); v[0] = 1; w = 1; } t() { w = 2; }"),
-            "'w' is written by 'main' and 't'\n");
+            "'w' is written by 'main' and 't'\n"
+            "  what one of them writes may be lost: give each a variable of its own, or let one of them write it\n");
   EXPECT_EQ(said("long w, v[3]; main() { _SetTask2(1, t); v[0] = 1; w = 1; } t() { w = 2; }"),
-            "'w' is written by 'main' and 't'\n");
+            "'w' is written by 'main' and 't'\n"
+            "  what one of them writes may be lost: give each a variable of its own, or let one of them write it\n");
   EXPECT_EQ(said("long n; main() { _SetTask2(1, t); _Wait(5); _SetTask2(1, u); } t() { n = 1; } u() { n = 2; }"), "")
       << "one task, one after the other";
   EXPECT_EQ(said("long n; main() { _SetTask2(1, t); _SetTask2(1, u); n = 3; } t() { n = 1; } u() { n = 2; }"),
-            "'n' is written by 'main', 't' and 'u'\n");
+            "'n' is written by 'main', 't' and 'u'\n"
+            "  what one of them writes may be lost: give each a variable of its own, or let one of them write it\n");
   EXPECT_EQ(said("#include <constb.h>\nlong n; main() { _SetTask2(1, t); _SetTask(1, t); } t() { n = 1; }"),
-            "'n' is written by task 2 't' and task 3 't'\n");
+            "'n' is written by task 2 't' and task 3 't'\n"
+            "  what one of them writes may be lost: give each a variable of its own, or let one of them write it\n");
   EXPECT_EQ(said("#include <constb.h>\nVARINT v; main() { v.Mode = 1; v.Priority = 1; _SetTask2(1, t); } t() { _SetVarInterrupt(v, u); } u() { }"), "")
       << "of what it takes orders from, a command writes the result alone";
   EXPECT_EQ(said("#declare N H300\nmain() { _SetTask2(1, t); N = 1; } t() { N = 2; }"), "")
