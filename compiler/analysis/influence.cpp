@@ -63,11 +63,11 @@ class Search {
     first_.push_back(nodes_.size());
   }
 
-  Way run() {
+  InfluencePath run() {
     collect();
     order();
     for (size_t group = 0; group < groups_.size(); ++group) follow(group);
-    Way way;
+    InfluencePath way;
     std::optional<Length> longest;
     std::set<uint8_t> tasks;
     for (const size_t one : cone_) {
@@ -401,8 +401,8 @@ struct Influence::Program {
   Places places;
   std::array<uint64_t, 4> turn_ms;
 
-  Way answer(const Question& question) const {
-    Way way = Search(places, turn_ms, question).run();
+  InfluencePath answer(const Question& question) const {
+    InfluencePath way = Search(places, turn_ms, question).run();
     if (!places.unclear_tasks.empty())
       way.because = fmt::format("task {} has several endless loops, or one in a function or with several beginnings", places.unclear_tasks.front());
     const auto has_part = [&](uint8_t task) {
@@ -434,13 +434,13 @@ bool Influence::has_turn(uint8_t task) const {
   return std::any_of(program_->places.turns.begin(), program_->places.turns.end(), [&](const auto& turn) { return turn->task() == task; });
 }
 
-Way Influence::into(const Span& sink) const { return program_->answer({std::nullopt, false, program_->places_of(sink)}); }
+InfluencePath Influence::into(const Span& sink) const { return program_->answer({std::nullopt, false, program_->places_of(sink)}); }
 
-Way Influence::between(const Span& source, const Span& sink, bool together) const {
+InfluencePath Influence::between(const Span& source, const Span& sink, bool together) const {
   return program_->answer({source, together, program_->places_of(sink)});
 }
 
-Way Influence::to_outputs(const Span& source, bool together) const {
+InfluencePath Influence::to_outputs(const Span& source, bool together) const {
   Question question{source, together, {}};
   for (size_t n = 0; n < program_->places.all.size(); ++n) {
     const Place& place = program_->places.all[n];

@@ -15,7 +15,7 @@
 
 namespace ipos::compiler {
 
-struct Way {
+struct InfluencePath {
   bool depends = false;                // something from outside leads there
   std::string because;                 // why nothing bounds the turns; empty: they are bounded
   std::vector<uint8_t> tasks;          // that have a part in it, in rising order
@@ -33,11 +33,11 @@ class Influence {
   bool has_turn(uint8_t task) const;
 
   // From anything that comes from outside to these variables.
-  Way into(const analysis::Span& sink) const;
+  InfluencePath into(const analysis::Span& sink) const;
   // From these variables, which a telegram writes, to other ones. `together`: what it brings comes at once.
-  Way between(const analysis::Span& source, const analysis::Span& sink, bool together) const;
+  InfluencePath between(const analysis::Span& source, const analysis::Span& sink, bool together) const;
   // The same to outputs: variables that the unit follows, and orders to it.
-  Way to_outputs(const analysis::Span& source, bool together) const;
+  InfluencePath to_outputs(const analysis::Span& source, bool together) const;
 
  private:
   struct Program;

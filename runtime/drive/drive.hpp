@@ -70,9 +70,6 @@ class Drive final : private DriveLink {
   // act only if P876 is ON and the source is the one of P100 or P101. `cyclic` is false for acyclic RS-485
   // requests, which do not restart the monitoring.
   void take_po(PoSource link, std::span<const uint16_t> words, bool cyclic = true);
-  // The drive has these words already and listens: to take them as cyclic ones only begins the count of silence anew, which
-  // makes steady_left() no less right.
-  bool has_po(PoSource link, std::span<const uint16_t> words) const;
   // A valid cyclic request without process data restarts the monitoring, too (1053 1610 p. 27).
   void take_request(PoSource source);
   // The bus has a watchdog of its own, and it has run out.

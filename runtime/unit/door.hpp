@@ -24,9 +24,6 @@ class Door final {
     pacer_.touch();
     return unit_;
   }
-  // After look(), to write what no tick looks at as long as it only counts: the next ticks stay as they were found. A unit that
-  // moves has gone further than that.
-  Unit& refresh() const { return ticks_.mode() == ManyTicks::Mode::Moving ? touch() : unit_; }
 
   // Ticks are still to be executed.
   bool is_behind() const { return pacer_.behind(); }

@@ -63,7 +63,7 @@ class Program {
     return all;
   }
 
-  ProgramTurns told(const compiler::Way& way, const Span& span, Users who) const {
+  ProgramTurns told(const compiler::InfluencePath& way, const Span& span, Users who) const {
     ProgramTurns out;
     out.depends = way.depends;
     out.ms = way.ms;

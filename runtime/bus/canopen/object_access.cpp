@@ -102,8 +102,9 @@ tl::expected<std::vector<uint8_t>, Abort> ObjectAccess::read(Time now, Address a
   // The list of errors is as long as there are errors.
   if (row.rule == Rule::ErrorEntry && address.sub > dictionary_.value(address.index))
     return tl::unexpected(Abort::NoData);
+  const auto word = static_cast<size_t>(address.sub - 1);  // of an input
   const uint32_t value =
-      row.rule == Rule::Input ? unit_.input(now, static_cast<uint16_t>(1U << (address.sub - 1)))[static_cast<size_t>(address.sub - 1)] : entry->value;
+      row.rule == Rule::Input ? unit_.input(now, static_cast<uint16_t>(1U << word))[word] : entry->value;
   return low_byte_first(value, bytes_of(row.type));
 }
 

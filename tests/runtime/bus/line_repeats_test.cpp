@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "runtime/bus/can/line.hpp"
+#include "tests/runtime/bus/noting_station.hpp"
 #include "tests/runtime/bus/wire_model.hpp"
 
 namespace ipos::runtime {
@@ -20,63 +21,23 @@ constexpr uint32_t kLineSource = 9;
 constexpr uint32_t kBaud = 500'000;
 constexpr Time kBit = kSecond / kBaud;
 
-class Station final : public CanNode {
- public:
-  explicit Station(bool minds) : minds_(minds) {}
-  void on_frame(Time now, const Frame& frame) override { heard.emplace_back('r', now, frame.id, frame.data[0]); }
-  void on_sent(Time now, const Frame& frame, uint64_t tag) override { heard.emplace_back('s', now, frame.id, tag); }
-  void on_not_sent(Time now, const Frame& frame, uint64_t tag, NotSent reason) override {
-    ++failures;
-    if (minds_ || reason != NotSent::NoAcknowledge)
-      heard.emplace_back("ncxd"[static_cast<size_t>(reason)], now, frame.id, tag);
-  }
-  bool minds_repeats() const override { return minds_; }
-  void on_bus_off(Time now) override {
-    heard.emplace_back('b', now, 0, 0);
-    line->recover(node);
-  }
-
-  CanLine* line = nullptr;
-  NodeId node = 0;
-  std::vector<std::tuple<char, Time, uint32_t, uint64_t>> heard;
-  uint64_t failures = 0;
-
- private:
-  bool minds_;
-};
-
-class Watcher final : public CanObserver {
- public:
-  void on_frame(const CanLine&, const FrameRecord& record) override {
-    frames.emplace_back(record.start, record.end, record.bits, record.sender);
-  }
-  void on_line_event(const CanLine& line, const LineEvent& event) override {
-    events.push_back(std::to_string(event.time) + ' ' + describe(line, event));
-  }
-  std::vector<std::tuple<Time, Time, uint32_t, NodeId>> frames;
-  std::vector<std::string> events;
-};
-
 struct Rig {
   Rig(bool in_turn, const std::vector<bool>& minds) {
     if (in_turn) line.repeat_in_turn();
     line.add_observer(watcher);
     for (const bool one : minds) add(one);
     for (const bool one : minds) {  // who takes the place of each
-      spare.push_back(std::make_unique<Station>(!one));
+      spare.push_back(std::make_unique<NotingStation>(!one));
       spare.back()->line = &line;
       spare.back()->node = static_cast<NodeId>(spare.size() - 1);
     }
   }
   void add(bool minds) {
-    stations.push_back(std::make_unique<Station>(minds));
+    stations.push_back(std::make_unique<NotingStation>(minds));
     stations.back()->line = &line;
     stations.back()->node = line.attach("unit" + std::to_string(stations.size()), kBaud, *stations.back());
   }
-  std::array<uint64_t, 5> load() const {
-    const LineLoad l = line.load(queue.now());
-    return {l.frames, l.busy_bits, l.percent, l.window_percent, l.peak_window_percent};
-  }
+  std::array<uint64_t, 5> load() const { return load_of(line, queue.now()); }
   uint64_t failures() const {
     uint64_t sum = 0;
     for (const auto& station : stations) sum += station->failures;
@@ -85,8 +46,8 @@ struct Rig {
 
   EventQueue queue;
   CanLine line{queue, kLineSource, "sbus", kBaud};
-  Watcher watcher;
-  std::vector<std::unique_ptr<Station>> stations, spare;
+  NotingObserver watcher;
+  std::vector<std::unique_ptr<NotingStation>> stations, spare;
 };
 
 Frame frame_of(uint32_t id, uint8_t first = 0) { return {id, 8, {first, 2, 3, 4, 5, 6, 7, 8}, false, false}; }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "runtime/bus/can/line.hpp"
+#include "tests/runtime/bus/noting_station.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -23,39 +24,6 @@ constexpr Time kBit = kSecond / kBaud;
 
 // Of node n, with room for another source on either side.
 uint32_t source_of(NodeId node) { return kLineSource + 2 + 2 * node; }
-
-class Station final : public CanNode {
- public:
-  void on_frame(Time now, const Frame& frame) override {
-    heard.emplace_back('r', now, frame.id, frame.data[0]);
-  }
-  void on_sent(Time now, const Frame& frame, uint64_t tag) override {
-    heard.emplace_back('s', now, frame.id, tag);
-  }
-  void on_not_sent(Time now, const Frame& frame, uint64_t tag, NotSent reason) override {
-    heard.emplace_back("ncxd"[static_cast<size_t>(reason)], now, frame.id, tag);
-  }
-  void on_bus_off(Time now) override {
-    heard.emplace_back('b', now, 0, 0);
-    line->recover(node);
-  }
-  CanLine* line = nullptr;
-  NodeId node = 0;
-  std::vector<std::tuple<char, Time, uint32_t, uint64_t>> heard;
-};
-
-class Watcher final : public CanObserver {
- public:
-  void on_frame(const CanLine&, const FrameRecord& record) override {
-    frames.emplace_back(record.start, record.end, record.bits, record.sender, record.frame.id,
-                        record.frame.data[0]);
-  }
-  void on_line_event(const CanLine& line, const LineEvent& event) override {
-    events.push_back(std::to_string(event.time) + ' ' + describe(line, event));
-  }
-  std::vector<std::tuple<Time, Time, uint32_t, NodeId, uint32_t, int>> frames;
-  std::vector<std::string> events;
-};
 
 // The plain way: an event for each frame.
 class Sender final : public EventTarget {
@@ -99,7 +67,7 @@ struct Rig {
     for (size_t n = 0; n < nodes; ++n) add();
   }
   void add() {
-    stations.push_back(std::make_unique<Station>());
+    stations.push_back(std::make_unique<NotingStation>(true));
     stations.back()->line = &line;
     stations.back()->node = line.attach("unit" + std::to_string(stations.size()), kBaud, *stations.back());
     stands.push_back(false);
@@ -126,17 +94,14 @@ struct Rig {
     else
       line.standing().remove(node);
   }
-  std::array<uint64_t, 5> load() const {
-    const LineLoad l = line.load(queue.now());
-    return {l.frames, l.busy_bits, l.percent, l.window_percent, l.peak_window_percent};
-  }
+  std::array<uint64_t, 5> load() const { return load_of(line, queue.now()); }
 
   bool plain;
   EventQueue queue;
   CanLine line{queue, kLineSource, "sbus", kBaud};
   Sender sender{queue, line};
-  Watcher watcher;
-  std::vector<std::unique_ptr<Station>> stations;
+  NotingObserver watcher;
+  std::vector<std::unique_ptr<NotingStation>> stations;
   std::vector<bool> stands;
 };
 
