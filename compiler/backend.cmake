@@ -22,3 +22,4 @@ ipos_layer(mutants
   LIBS fmt::fmt)
 ipos_not_hot(ipos_asm BUSY)
 ipos_not_hot(ipos_compiler SIZE 20 BUSY)
+ipos_join(compiler frontend asm compiler)

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "compiler/asm/text_forms.hpp"
+#include "compiler/preprocess/number.hpp"
 #include "stdlib/plain_text.hpp"
 #include "stdlib/system_variables.hpp"
 
@@ -16,14 +17,8 @@ bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' |
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_word(char c) { return is_digit(c) || (lower(c) >= 'a' && lower(c) <= 'z') || c == '_'; }
 
-int digit_value(char c) {
-  if (is_digit(c)) return c - '0';
-  c = lower(c);
-  return c >= 'a' && c <= 'f' ? c - 'a' + 10 : 99;
-}
-
 // Value of all digits, or nothing when one of them is none of the base; grows no further than kLimit.
-std::optional<int64_t> digits_value(std::string_view digits, int base) {
+std::optional<int64_t> digits_value(std::string_view digits, uint32_t base) {
   if (digits.empty()) return std::nullopt;
   int64_t value = 0;
   for (const char c : digits) {

@@ -3,15 +3,10 @@
 
 #include <fmt/format.h>
 
+#include "compiler/ast/walk.hpp"
+
 namespace ipos::compiler::ast {
 namespace {
-
-template <typename... Functions>
-struct Overloaded : Functions... {
-  using Functions::operator()...;
-};
-template <typename... Functions>
-Overloaded(Functions...) -> Overloaded<Functions...>;
 
 std::string_view spelling(StepOp op) {
   switch (op) {

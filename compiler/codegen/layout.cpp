@@ -14,9 +14,9 @@
 namespace ipos::compiler {
 namespace {
 
-class Layout {
+class CodeLayout {
  public:
-  Layout(const checked::Program& program, const std::vector<FunctionCode>& functions,
+  CodeLayout(const checked::Program& program, const std::vector<FunctionCode>& functions,
          const stdlib::UnitType& unit, const SourceMap& sources, Diagnostics& diagnostics)
       : program_(program),
         functions_(functions),
@@ -230,7 +230,7 @@ std::optional<GeneratedProgram> lay_out(const checked::Program& program,
                                         const std::vector<FunctionCode>& functions,
                                         const stdlib::UnitType& unit, const SourceMap& sources,
                                         Diagnostics& diagnostics) {
-  return Layout(program, functions, unit, sources, diagnostics).run();
+  return CodeLayout(program, functions, unit, sources, diagnostics).run();
 }
 
 }  // namespace ipos::compiler

@@ -21,9 +21,9 @@ Spelled spelled(const Diagnostic& diagnostic, const SourceMap& map) {
           place.column};
 }
 
-using Place = std::tuple<std::string_view, uint32_t, uint32_t>;
+using Spot = std::tuple<std::string_view, uint32_t, uint32_t>;
 
-Place place_of(const Diagnostic& diagnostic, const SourceMap& map) {
+Spot place_of(const Diagnostic& diagnostic, const SourceMap& map) {
   const Position at = map.position(diagnostic.span.begin);
   return {at.file == nullptr ? std::string_view() : std::string_view(at.file->name), at.line, at.column};
 }
@@ -33,7 +33,7 @@ Place place_of(const Diagnostic& diagnostic, const SourceMap& map) {
 std::vector<Repeats> repeats_of(std::span<const Diagnostic> all, const SourceMap& map) {
   std::vector<Repeats> groups;
   std::map<Spelled, size_t> known;
-  std::map<size_t, std::set<Place>> places;  // of those that came again
+  std::map<size_t, std::set<Spot>> places;  // of those that came again
   for (size_t n = 0; n < all.size(); ++n) {
     const auto [entry, is_new] = known.try_emplace(spelled(all[n], map), groups.size());
     if (is_new) {
@@ -41,7 +41,7 @@ std::vector<Repeats> repeats_of(std::span<const Diagnostic> all, const SourceMap
       continue;
     }
     Repeats& group = groups[entry->second];
-    std::set<Place>& seen = places[entry->second];
+    std::set<Spot>& seen = places[entry->second];
     if (group.more++ == 0) seen.insert(place_of(all[group.first], map));
     if (all[n].span.begin.in_macro() && seen.insert(place_of(all[n], map)).second) group.elsewhere.push_back(n);
   }

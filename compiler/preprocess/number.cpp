@@ -4,14 +4,6 @@
 namespace ipos::compiler {
 namespace {
 
-// Value of a digit, or a number no base has.
-uint32_t digit_value(char c) {
-  if (c >= '0' && c <= '9') return static_cast<uint32_t>(c - '0');
-  if (c >= 'a' && c <= 'f') return static_cast<uint32_t>(c - 'a' + 10);
-  if (c >= 'A' && c <= 'F') return static_cast<uint32_t>(c - 'A' + 10);
-  return 99;
-}
-
 // `1.5`, `.5`, `1.`, `1e6`: what C reads as a floating constant.
 bool is_fraction(std::string_view text) {
   size_t digits = 0;
@@ -21,6 +13,13 @@ bool is_fraction(std::string_view text) {
 }
 
 }  // namespace
+
+uint32_t digit_value(char c) {
+  if (c >= '0' && c <= '9') return static_cast<uint32_t>(c - '0');
+  if (c >= 'a' && c <= 'f') return static_cast<uint32_t>(c - 'a' + 10);
+  if (c >= 'A' && c <= 'F') return static_cast<uint32_t>(c - 'A' + 10);
+  return 99;
+}
 
 ParsedNumber parse_number(std::string_view text, bool behind_minus) {
   uint32_t base = 10;

@@ -14,6 +14,9 @@ struct ParsedNumber {
   bool pattern = false;  // written as hexadecimal or binary
 };
 
+// Value of a digit, or a number no base has.
+uint32_t digit_value(char c);
+
 // A decimal number may be up to 2147483647, or one more after a minus sign.
 ParsedNumber parse_number(std::string_view text, bool behind_minus);
 

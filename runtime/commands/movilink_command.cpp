@@ -26,7 +26,7 @@ struct BusRow {
 
   bool is_of(const stdlib::UnitType& unit) const { return !units || unit.has(*units); }
 };
-constexpr auto kBuses = [] {
+constexpr auto kBusRows = [] {
   using enum stdlib::Trait;
   constexpr std::nullopt_t Every = std::nullopt;
   return std::to_array<BusRow>({
@@ -95,11 +95,11 @@ vm::HostReply MovilinkCommand::start(Time now, vm::Machine& machine, int context
     store(job, serve_own(now, job.bus, *format));
     return {};
   }
-  const auto row = std::find_if(std::begin(kBuses), std::end(kBuses), [&](const BusRow& bus) {
+  const auto row = std::find_if(std::begin(kBusRows), std::end(kBusRows), [&](const BusRow& bus) {
     return bus.code == element(kBusType) && bus.is_of(unit_);
   });
-  if (row == std::end(kBuses)) return refuse(return_codes::kWrongManagement, unknown_bus(element(kBusType)));
-  Route& route = routes_[static_cast<size_t>(row - std::begin(kBuses))];
+  if (row == std::end(kBusRows)) return refuse(return_codes::kWrongManagement, unknown_bus(element(kBusType)));
+  Route& route = routes_[static_cast<size_t>(row - std::begin(kBusRows))];
   if (route.master == nullptr)
     return refuse(return_codes::kCommunication,
                   fmt::format("MOVLNK: the station is not connected to {}", row->text));
@@ -123,7 +123,7 @@ std::string MovilinkCommand::unknown_bus(int32_t code) const {
     if (bus.code == code && bus.is_of(unit_))
       return fmt::format("MOVLNK: bus type {} is {}", code, bus.text);
   std::vector<int32_t> codes;
-  for (const BusRow& bus : kBuses)
+  for (const BusRow& bus : kBusRows)
     if (bus.is_of(unit_)) codes.push_back(bus.code);
   return fmt::format("MOVLNK: bus type {} is none of {}, which {} has", code, fmt::join(codes, ", "),
                      unit_.title);

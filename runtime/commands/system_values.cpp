@@ -71,7 +71,7 @@ constexpr ParameterValue kParameterValues[] = {
     {kRampType, "916", 1, 1, "ramp type"},
 };
 
-int32_t signed_word(uint16_t word) { return static_cast<int16_t>(word); }
+int32_t value_of_word(uint16_t word) { return static_cast<int16_t>(word); }
 
 // Variables as words, from the `first` of the block on.
 template <typename Words>
@@ -134,10 +134,10 @@ vm::HostReply get_system_value(const CommandCall& call) {
     case kUnitState: target = static_cast<int32_t>(drive.condition()); return {};
     case kPoData10:
       for (size_t n = 0; n < kFurtherWords; ++n)
-        call.variable(0, kProcessWords + n) = signed_word(drive.further_po()[n]);
+        call.variable(0, kProcessWords + n) = value_of_word(drive.further_po()[n]);
       [[fallthrough]];
     case kPoData:
-      for (size_t n = 0; n < kProcessWords; ++n) call.variable(0, n) = signed_word(drive.po()[n]);
+      for (size_t n = 0; n < kProcessWords; ++n) call.variable(0, n) = value_of_word(drive.po()[n]);
       return {};
     case kDcLink: target = axis.dc_link / 1000; return {};
     case kAnalogInputs:

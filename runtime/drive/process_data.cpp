@@ -13,7 +13,7 @@ using stdlib::SetpointSource;
 constexpr int32_t kSpeedDigit = 200;    // 0.2 rpm
 constexpr int32_t kCurrentDigit = 100;  // 0.1 %
 constexpr int64_t kFullScale = 0x4000;  // 100 %
-constexpr int64_t kPercent = 100'000;   // 100 % in 1/1000 %
+constexpr int64_t kWhole = 100'000;   // 100 % in 1/1000 %
 
 // P100 and P101 name the buses by different codes (1053 1610 p. 72). P837 to P101 of SBus 2 are MOVIDRIVE B's
 // and stand with that bus.
@@ -69,7 +69,7 @@ BusOrder decode_order(const DriveWords& words, const std::array<uint8_t, kProces
       case PoAssignment::Slip: set_first(order.slip, speed_of_word(word)); break;
       case PoAssignment::Ramp: set_first(order.ramp, int32_t{word}); break;
       case PoAssignment::PiSetpoint:
-        set_first(order.pi_setpoint, static_cast<int32_t>(signed_word(word) * kPercent / kFullScale));
+        set_first(order.pi_setpoint, static_cast<int32_t>(signed_word(word) * kWhole / kFullScale));
         break;
       case PoAssignment::ControlWord1:
       case PoAssignment::ControlWord2:

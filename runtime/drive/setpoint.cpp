@@ -9,7 +9,7 @@
 namespace ipos::runtime {
 namespace {
 
-constexpr std::string_view kTexts[] = {
+constexpr std::string_view kNoteTexts[] = {
 #define SETPOINT_NOTE(name, text) text,
 #include "runtime/drive/setpoint_notes.def"
 };
@@ -89,7 +89,7 @@ Setpoint select_current(const Settings& settings, const ParameterSet& set, const
 }  // namespace
 
 std::string setpoint_note_text(SetpointNote note, const stdlib::UnitType& unit) {
-  return stdlib::unit_text(unit, kTexts[static_cast<size_t>(note)]);
+  return stdlib::unit_text(unit, kNoteTexts[static_cast<size_t>(note)]);
 }
 
 bool sign_decides(const Settings& settings, bool slave_free_run) {

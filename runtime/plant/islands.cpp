@@ -14,9 +14,9 @@ namespace {
 constexpr Time kWorthThreads = 10 * kMillisecond;
 
 // Sets of numbers that grow together. Each has its least number as its name.
-class Joined {
+class GrowingSets {
  public:
-  explicit Joined(size_t count) : to_(count) { std::iota(to_.begin(), to_.end(), size_t{0}); }
+  explicit GrowingSets(size_t count) : to_(count) { std::iota(to_.begin(), to_.end(), size_t{0}); }
   size_t find(size_t n) const { return to_[n] == n ? n : find(to_[n]); }
   void join(size_t a, size_t b) {
     const auto [least, most] = std::minmax({find(a), find(b)});
@@ -39,7 +39,7 @@ Islands::Islands(const PlantFile& file, EventQueue& whole, Journal& journal, uns
   if (threads == 0 || is_joined_to_the_outside(file)) return;
   // A number for each line, and one for all that is on no line.
   const size_t alone = file.buses.size();
-  Joined joined(alone + 1);
+  GrowingSets joined(alone + 1);
   const auto land = [&](const auto& configs) {
     std::vector<size_t> first;
     for (const auto& config : configs) {

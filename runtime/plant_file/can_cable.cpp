@@ -44,9 +44,9 @@ std::vector<Plug> plugs_of(const PlantFile& file, const std::string& bus) {
   return plugs;
 }
 
-class CableCheck {
+class CanCableCheck {
  public:
-  CableCheck(const PlantFile& file, const BusConfig& bus) : bus_(bus), plugs_(plugs_of(file, bus.name)) {}
+  CanCableCheck(const PlantFile& file, const BusConfig& bus) : bus_(bus), plugs_(plugs_of(file, bus.name)) {}
 
   std::vector<CableFinding> run() {
     if (plugs_.size() > kMostCanStations)
@@ -124,7 +124,7 @@ uint32_t can_length_limit(uint32_t baud) {
 }
 
 std::vector<CableFinding> can_cable_findings(const PlantFile& file, const BusConfig& bus) {
-  return CableCheck(file, bus).run();
+  return CanCableCheck(file, bus).run();
 }
 
 }  // namespace ipos::runtime

@@ -10,12 +10,12 @@ struct Row {
   std::string_view ending;
   TraceForm form;
 };
-constexpr Row kForms[] = {{".csv", csv_trace}, {".vcd", vcd_trace}, {".jsonl", jsonl_trace}, {".ipos-trace", packed_trace}};
+constexpr Row kTraceForms[] = {{".csv", csv_trace}, {".vcd", vcd_trace}, {".jsonl", jsonl_trace}, {".ipos-trace", packed_trace}};
 
 }  // namespace
 
 TraceForm trace_form(std::string_view ending) {
-  for (const Row& row : kForms)
+  for (const Row& row : kTraceForms)
     if (row.ending == ending) return row.form;
   return csv_trace;
 }

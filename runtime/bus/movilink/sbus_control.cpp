@@ -6,7 +6,7 @@
 namespace ipos::runtime {
 namespace {
 
-enum Event : uint32_t { kSync, kSyncOutput, kOutput };
+enum ControlEvent : uint32_t { kSync, kSyncOutput, kOutput };
 
 constexpr uint64_t kSyncTag = 1;
 constexpr uint64_t kTargetTags = 2;  // and above: a telegram that still waits is overtaken by the next one

@@ -5,7 +5,7 @@
 namespace ipos::runtime {
 namespace {
 
-enum Event : uint32_t { kSendInput, kSendResponse, kSendResponse2 };
+enum SlaveEvent : uint32_t { kSendInput, kSendResponse, kSendResponse2 };
 
 constexpr Telegram kResponses[] = {Telegram::ParameterResponse, Telegram::ParameterResponse2};
 

@@ -7,7 +7,7 @@
 namespace ipos::runtime {
 namespace {
 
-enum Event : uint32_t { kAnswer, kLink };
+enum SerialSlaveEvent : uint32_t { kAnswer, kLink };
 
 }  // namespace
 

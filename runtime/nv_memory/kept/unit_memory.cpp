@@ -12,11 +12,11 @@ struct Area {
   uint16_t first;
   uint16_t count;
 };
-constexpr Area kAreas[] = {
+constexpr Area kMemoryAreas[] = {
 #define INDEX_AREA(name, first, count, everywhere, meaning) {first, count},
 #include "stdlib/index_areas.def"
 };
-constexpr const Area& area(IndexArea which) { return kAreas[static_cast<size_t>(which)]; }
+constexpr const Area& area(IndexArea which) { return kMemoryAreas[static_cast<size_t>(which)]; }
 
 constexpr uint8_t kEepromFault = 25, kChecksumFault = 94;
 

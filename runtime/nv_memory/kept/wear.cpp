@@ -9,19 +9,19 @@ namespace ipos::runtime {
 namespace {
 
 // From `seconds` of the unit on, and the next unit not yet.
-struct Span {
+struct TimeUnit {
   int64_t from;
-  int64_t unit;
+  int64_t length;
   const char* name;
 };
 constexpr int64_t kDay = 86'400, kYear = 31'557'600;
-constexpr Span kSpans[] = {{2 * kYear, kYear, "years"}, {2 * kDay, kDay, "days"}, {3'600, 3'600, "h"}};
+constexpr TimeUnit kTimeUnits[] = {{2 * kYear, kYear, "years"}, {2 * kDay, kDay, "days"}, {3'600, 3'600, "h"}};
 
 // "36 s", "2.7 h", "115.7 days", "3.8 years"
 std::string duration(int64_t seconds) {
-  for (const Span& span : kSpans)
-    if (seconds >= span.from)
-      return fmt::format("{}.{} {}", seconds / span.unit, seconds % span.unit * 10 / span.unit, span.name);
+  for (const TimeUnit& unit : kTimeUnits)
+    if (seconds >= unit.from)
+      return fmt::format("{}.{} {}", seconds / unit.length, seconds % unit.length * 10 / unit.length, unit.name);
   return fmt::format("{} s", seconds);
 }
 
