@@ -102,6 +102,21 @@ void Drive::take_po(PoSource link, std::span<const uint16_t> words, bool cyclic)
   if (reset_edge) reset_fault();
 }
 
+bool Drive::hear_again(PoSource link, std::span<const uint16_t> words) {
+  LinkWatch& watch = state_.watches[static_cast<size_t>(link)];
+  if (!watch.alert() || settings().po_enable != 1) return false;
+  const PoSource source = words_of(link);
+  const size_t first = std::min(words.size(), kProcessWords);
+  const Words& known = now_->po[static_cast<size_t>(source)];
+  for (size_t n = 0; n < first; ++n)
+    if (words[n] != known[n] || words[n] != now_->shown_po[n]) return false;
+  for (size_t n = kProcessWords; n < std::min(words.size(), kProcessWords + kFurtherWords); ++n)
+    if (words[n] != further_po_[n - kProcessWords]) return false;
+  if (settings().control_bus == source && order_of(source).control_word.value_or(0) != state_.last_control_word) return false;
+  watch.on_request();
+  return true;
+}
+
 void Drive::take_request(PoSource source) {
   if (touched_watch(source).on_request()) now_.change().faults.clear_cause(fault_of(source));
 }

@@ -70,6 +70,9 @@ class Drive final : private DriveLink {
   // act only if P876 is ON and the source is the one of P100 or P101. `cyclic` is false for acyclic RS-485
   // requests, which do not restart the monitoring.
   void take_po(PoSource link, std::span<const uint16_t> words, bool cyclic = true);
+  // The same words once more, which the drive has taken and listens to: that only begins the count of silence anew, so what is
+  // known of the next ticks stays right. False: they bring something new, and nothing is done.
+  bool hear_again(PoSource link, std::span<const uint16_t> words);
   // A valid cyclic request without process data restarts the monitoring, too (1053 1610 p. 27).
   void take_request(PoSource source);
   // The bus has a watchdog of its own, and it has run out.

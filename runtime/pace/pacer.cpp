@@ -93,8 +93,17 @@ void Pacer::plan(Time now) {
 // which may lie between two whole milliseconds: a unit is switched on at any time.
 Time Pacer::last_tick() const {
   const Time now = queue_.now();
-  const Time last = now - (now - first_) % kMillisecond;
+  const Time last = begun_tick();
   return last == now && !queue_.has_passed(source_) ? last - kMillisecond : last;
+}
+
+// Of this millisecond.
+Time Pacer::begun_tick() const { return queue_.now() - (queue_.now() - first_) % kMillisecond; }
+
+void Pacer::catch_up_after_tick() {
+  if (!behind_) return;
+  run_to(begun_tick());
+  timed_.settle();
 }
 
 void Pacer::make_up() {

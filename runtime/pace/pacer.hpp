@@ -40,6 +40,8 @@ class Pacer final : private EventTarget {
   void catch_up() {
     if (behind_) make_up();
   }
+  // The same with the tick of this moment, if there is one: it was to come first.
+  void catch_up_after_tick();
   // Before somebody writes: the same, and the next tick comes in its turn.
   void touch();
   // The ticks up to now are executed, but not settled.
@@ -64,6 +66,7 @@ class Pacer final : private EventTarget {
     timed_.rest_ends();
   }
   Time last_tick() const;
+  Time begun_tick() const;
 
   EventQueue& queue_;
   uint32_t source_;

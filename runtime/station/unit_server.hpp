@@ -26,13 +26,19 @@ class UnitServer final : public ParameterServer, public ProcessDataServer, publi
   }
   bool has_subindices() const override { return door_.look().server().has_subindices(); }
   void take_output(Time now, OutputChannel channel, std::span<const uint16_t> words) override {
+    if (channel != OutputChannel::Group && hear_again(words)) return;
     UnitInterface& server = door_.touch().server();
     if (channel == OutputChannel::Group && !leads_ && server.follows_sbus_master()) return;
     if (!leads_) return server.take_sbus2(words);
     server.take_output(now, channel, words);
   }
   ProcessWords input(Time /*now*/) override { return door_.look().drive().pi(); }
-  void synchronize(Time now) override { door_.touch().server().synchronize(now); }
+  ProcessWords input_after_tick(Time /*now*/) override { return door_.look_after_tick().drive().pi(); }
+  // Only who follows a master minds.
+  void synchronize(Time now) override {
+    Unit* const going_on = door_.while_it_goes_on();
+    (going_on != nullptr ? *going_on : door_.touch()).server().synchronize(now);
+  }
   ProcessDataServer& rs485_data() { return rs485_data_; }
   // What telegrams wanted and did not get, in words; each is told once.
   std::vector<std::string> take_reasons() {
@@ -65,6 +71,11 @@ class UnitServer final : public ParameterServer, public ProcessDataServer, publi
    private:
     Door& door_;
   };
+
+  bool hear_again(std::span<const uint16_t> words) {
+    Unit* const going_on = door_.while_it_goes_on();
+    return going_on != nullptr && going_on->server().hear_again(leads_ ? PoSource::Sbus : PoSource::Sbus2, words);
+  }
 
   Door& door_;
   bool leads_;

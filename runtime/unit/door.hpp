@@ -24,6 +24,18 @@ class Door final {
     pacer_.touch();
     return unit_;
   }
+  // To read, for who comes after the tick of this moment: an event of the unit's own that is less than a millisecond old, such as
+  // an answer.
+  const Unit& look_after_tick() const {
+    pacer_.catch_up_after_tick();
+    return unit_;
+  }
+  // To write what no tick minds as long as the unit only counts or moves on: everything is as it is now, and the next ticks stay as
+  // they were found. Null: the unit does more; touch().
+  Unit* while_it_goes_on() const {
+    pacer_.catch_up();
+    return ticks_.goes_on() ? &unit_ : nullptr;
+  }
 
   // Ticks are still to be executed.
   bool is_behind() const { return pacer_.behind(); }

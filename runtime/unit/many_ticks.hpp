@@ -50,6 +50,9 @@ class ManyTicks final {
   }
   // The next ticks in which the unit decides nothing, whatever its program does.
   Ticks undecided() const { return mode_ == Mode::Idle || lets_wait() ? left_ : 0; }
+  // The drive counts or moves on, positioning follows no master, and the tasks have nothing to do with it: found so, and nobody has
+  // touched the unit since.
+  bool goes_on() const { return left_ != 0 && (mode_ == Mode::Ahead || mode_ == Mode::Moving); }
   bool lets_wait() const { return mode_ == Mode::Ahead && left_ != 0 && !reach_.may_fault; }
 
   Mode mode() const { return mode_; }

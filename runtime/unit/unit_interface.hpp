@@ -80,6 +80,11 @@ class UnitInterface final : public ParameterServer, public ProcessDataServer, pu
   tl::expected<int32_t, ReturnCode> serve(Time now, const ParameterRequest& request) override;
   bool has_subindices() const override { return unit().has(stdlib::Trait::Subindices); }
   void take_output(Time now, OutputChannel channel, std::span<const uint16_t> words) override;
+  // The words of the last telegram of this bus once more, to the unit alone: Drive::hear_again(). False: take_output() or
+  // take_sbus2().
+  bool hear_again(PoSource link, std::span<const uint16_t> words) {
+    return looked_for_[static_cast<size_t>(PoSource::Sbus)][0] == parameters_.changes() + 1 && state_.hear_again(link, words);
+  }
   // Over SBus 2, which is monitored by P893.
   void take_sbus2(std::span<const uint16_t> words);
   bool follows_sbus_master() const;  // P100 = MASTER-SBus

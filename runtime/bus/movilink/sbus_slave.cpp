@@ -154,7 +154,7 @@ void SbusSlave::on_event(Time now, uint32_t kind, uint64_t argument) {
   Frame frame;
   if (kind == kSendInput) {
     frame =
-        process_frame(sbus_identifier(Telegram::ProcessInput, settings_.address), process_data_.input(now));
+        process_frame(sbus_identifier(Telegram::ProcessInput, settings_.address), process_data_.input_after_tick(now));
   } else {
     frame.id = sbus_identifier(kResponses[kind - kSendResponse], settings_.address);
     frame.length = 8;

@@ -46,6 +46,8 @@ class ProcessDataServer {
   // One to three words; words that are not sent keep their value (RS-485 by TYP, 1053 1610 p. 23).
   virtual void take_output(Time now, OutputChannel channel, std::span<const uint16_t> words) = 0;
   virtual ProcessWords input(Time now) = 0;
+  // The same in an event of the unit's own that was scheduled less than a millisecond ago: of a tick at this very moment, too.
+  virtual ProcessWords input_after_tick(Time now) { return input(now); }
   virtual void synchronize(Time now) = 0;  // sync telegram, after its PO-sync words were taken
 
   // A valid cyclic request of RS-485 for this unit, before its content is carried out: starts or restarts the

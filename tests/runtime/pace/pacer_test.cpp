@@ -147,6 +147,38 @@ TEST(Pacer, AReaderOfALowerSourceDoesNotSeeTheTickOfThisMoment) {
   EXPECT_EQ(seen, (std::vector<int64_t>{three, four}));
 }
 
+// An event of the own source that is scheduled in the middle of a millisecond, for its end: the tick of that moment was to come
+// before it, and so it is seen, whether it was executed by then or not.
+TEST(Pacer, AnAnswerComesAfterTheTickOfItsMoment) {
+  struct Answer final : runtime::EventTarget {
+    explicit Answer(Rig& of) : rig(of) {}
+    void on_event(Time /*now*/, uint32_t /*kind*/, uint64_t /*argument*/) override {
+      rig.pacer.catch_up_after_tick();
+      sums.push_back(rig.toy.sum);
+    }
+    Rig& rig;
+    std::vector<int64_t> sums;
+  };
+  int behind = 0;
+  for (const Time start : {Time{0}, kMillisecond / 3}) {
+    Rig expected(Pace::InTurn, start), lazy(Pace::Lazy, start);
+    Answer in_turn(expected), late(lazy);
+    for (int n = 1; n < 400; ++n) {
+      const Time tick = start + n * kMillisecond;
+      for (Rig* rig : {&expected, &lazy}) rig->queue.run_until(tick - kMillisecond / 5);
+      behind += lazy.pacer.behind() ? 1 : 0;
+      expected.queue.schedule(tick, kSource, in_turn, 0);
+      lazy.queue.schedule(tick, kSource, late, 0);
+      if (n % 3 == 0) lazy.look();
+    }
+    for (Rig* rig : {&expected, &lazy}) rig->queue.run_until(start + 500 * kMillisecond);
+    EXPECT_EQ(in_turn.sums.size(), 399U);
+    EXPECT_EQ(late.sums, in_turn.sums);
+    EXPECT_EQ(late.rig.toy.sent, in_turn.rig.toy.sent);
+  }
+  EXPECT_GT(behind, 400);
+}
+
 TEST(Pacer, StoppedItExecutesNothing) {
   Rig rig(Pace::Lazy);
   rig.queue.run_until(5 * kMillisecond);

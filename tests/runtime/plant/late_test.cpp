@@ -87,6 +87,44 @@ TEST(Late, AUnitMayBeSwitchedOnBetweenTwoMilliseconds) {
   EXPECT_GT(late, 0U);
 }
 
+// A master that says the same again and again calls nobody to its turn. The answer has the values of its moment, and where a
+// tick falls on that moment, those after the tick: at 125 kbaud many requests end 800 us after a millisecond, and the answer
+// comes 200 us later. PI3 is the position of a shaft that turns, so an answer shows which millisecond it knows.
+TEST(Late, AnswersToWordsThatBringNothingNewAreOfTheirMillisecond) {
+  struct Starts final : runtime::CanObserver {
+    void on_frame(const runtime::CanLine&, const runtime::FrameRecord& record) override {
+      if (record.frame.id == kAnswer) on_tick += record.start % runtime::kMillisecond == 0 ? 1 : 0;
+    }
+    void on_line_event(const runtime::CanLine&, const runtime::LineEvent&) override {}
+    const uint32_t kAnswer = 8 * 1 + 4;  // of address 1 to process output data
+    int on_tick = 0;
+  };
+  int on_tick = 0, late = 0;
+  for (int speed = 500; speed < 7500; speed += 211) {
+    const std::string text = fmt::format(
+        "[[bus]]\nname = \"can\"\nkind = \"can\"\nbaud = 125000\n"
+        "[[station]]\nname = \"u\"\nunit = \"mdxb\"\nprogram = \"U.IPC\"\nsbus = \"can\"\n"
+        "[station.parameters]\nP881 = 1\nP884 = 0\nP100 = 10\nP101 = 3\nP130 = 100\nP883 = '100 ms'\nP875 = 4\n"
+        "[station.inputs]\nDI00 = 1\nDI01 = 1\nDI03 = 1\n"
+        "[[control]]\nname = \"plc\"\nsbus = \"can\"\n[[control.target]]\naddress = 1\npo = [6, {}]\nevery = \"{}ms\"\n",
+        speed, 3 + speed % 7);
+    const std::map<std::string, std::string> sources = {{"U.IPC", "long n; main() { while (1) n = n + 1; }"}};
+    Watched expected(make_plant(text, sources, std::nullopt, in_turn())), plant(make_plant(text, sources));
+    Starts starts;
+    plant.plant->add_observer(starts);
+    for (Time now = ms(100); now <= ms(1500); now += ms(100)) {
+      plant.plant->run_until(now + 3'700'000);
+      late += plant.plant->stations()[0]->behind() ? 1 : 0;
+    }
+    expected.plant->run_until(ms(1600));
+    plant.plant->run_until(ms(1600));
+    ASSERT_NO_FATAL_FAILURE(expect_same(plant, expected, text));
+    on_tick += starts.on_tick;
+  }
+  EXPECT_GT(on_tick, 100);
+  EXPECT_GT(late, 300) << "of 510";
+}
+
 // Both are late when their programs fault; what is told of them stands in the order in which it happened.
 TEST(Late, FaultsAreToldInTheirOrder) {
   const std::string units =

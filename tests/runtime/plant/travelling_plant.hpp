@@ -91,6 +91,7 @@ class TravellingPlant {
     if (pick(0, 7) == 0) text_ += "noise = \"0.3 %\"\n";
     text_ += fmt::format("[station.parameters]\n{} = {}\n{} = {}\n", b ? "P881" : "P813", n + 1, b ? "P884" : "P816", slow_ ? 0 : 2);
     if (led) text_ += fmt::format("P100 = 10\nP101 = 3\nP876 = 1\nP870 = {}\nP871 = 1\n", 9);
+    if (led && pick(0, 2) != 0) text_ += fmt::format("{} = '{} ms'\n", b ? "P883" : "P815", pick(2, 15) * 10);  // may run out
     ramps();
     if (positions) positioning();
     outputs();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "runtime/station/can_bus.hpp"
+#include "tests/runtime/plant/loop_body.hpp"
 #include "tests/runtime/plant/plant_rig.hpp"
 
 namespace ipos::tests {
@@ -28,7 +29,7 @@ struct Frames final : runtime::CanObserver {
   std::vector<std::string> lines;
 };
 
-// Programs that let a unit be idle, run ahead, write PI words, wait, fault, and start a timer.
+// Programs that let a unit be idle, run ahead, write PI words, wait, fault, start a timer, and follow SYNC by ISYNC.
 const char* const kPrograms[] = {
     "main() { while (1) { } }",
     "long a; main() { while (1) { a = a * 5 + 1; } }",
@@ -37,6 +38,7 @@ const char* const kPrograms[] = {
     "#include <constb.h>\nlong n; main() { while (1) { _Wait(7); n = n + 3; } }",
     "#include <constb.h>\nlong n, z; main() { _Wait(400); n = n / z; }",
     "#include <constb.h>\nlong n; main() { H488 = 300; while (1) { if (H488 == 0) { H488 = 300; n++; } } }",
+    "#include <constb.h>\nlong m; main() { SyncSource = numof(m); SyncControl = 1; while (1) { _Wait(9); m = m + 50; } }",
 };
 
 struct Draw {
@@ -51,9 +53,10 @@ struct Draw {
 
 std::string node_text(Draw& draw, int number) {
   std::string text = fmt::format(
-      "[[station]]\nname = 'n{0}'\nunit = 'mdxb'\nprogram = 'P{0}.IPC'\nsbus = 'can'\n[station.parameters]\nP880 = 1\nP886 = {0}\n"
-      "P100 = 10\nP101 = 3\nP130 = {1}\n",
-      number, 100 + 100 * draw.below(20));
+      "[[station]]\nname = 'n{0}'\nunit = 'mdxb'\nprogram = 'P{0}.IPC'\nsbus = 'can'\n{2}[station.parameters]\nP880 = 1\n"
+      "P886 = {0}\nP100 = 10\nP101 = 3\nP130 = {1}\n",
+      number, 100 + 100 * draw.below(20), draw.below(4) == 0 ? "noise = '0.3 %'\n" : "");
+  if (draw.below(3) == 0) text += fmt::format("P700 = 13\nP077 = {}\n", draw.one_of("0", "2"));
   if (draw.below(2) == 0) text += "P883 = '200 ms'\n";  // timeout of the SBus
   for (int pi = 873; pi <= 875; ++pi)
     text += fmt::format("P{} = {}\n", pi, draw.one_of("0", "1", "2", "3", "4", "5", "6", "7", "9"));
@@ -106,6 +109,9 @@ void do_something(Plant& plant, uint32_t what, uint32_t value) {
     case 4:
       if (station.powered()) station.drive().state().reset_fault();
       break;
+    case 5:
+      if (station.powered()) (void)station.drive().set_parameter("P077", static_cast<int32_t>(value / 8 % 2 * 2));
+      break;
     default: station.look();
   }
 }
@@ -144,7 +150,7 @@ TEST_P(CanopenLate, SendsWhatThePlainRunSends) {
   RecordProperty("left_out", left_out ? 1 : 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, CanopenLate, ::testing::Range(1U, 151U));
+INSTANTIATE_TEST_SUITE_P(Seeds, CanopenLate, ::testing::Range(static_cast<uint32_t>(first_plant()), static_cast<uint32_t>(plant_count(150)) + 1));
 
 // A node that turns and tells its process data at SYNC only: nobody can notice its milliseconds one by one, whether its
 // program works or waits, and no SYNC and no repeated process data end that.
