@@ -63,6 +63,7 @@ void CanopenPort::on_frame(Time now, const Frame& frame) {
   if (!node_) return;
   receive(now, frame);
   node_->on_frame(now, frame);
+  if (!door_.has_reasons()) return;
   for (std::string& reason : server_.take_reasons()) note(now, Weight::Why, std::move(reason));
 }
 
@@ -93,11 +94,10 @@ void CanopenPort::note(Time now, Weight weight, std::string text) {
 
 void CanopenPort::take_output(Time now, const canopen::Words& words, uint16_t written) {
   size_t count = 0;
-  for (size_t n = 0; n < output_.size(); ++n)
-    if ((written >> n & 1) != 0) {
-      output_[n] = words[n];
-      count = n + 1;
-    }
+  canopen::each_word(written, [&](size_t n) {
+    output_[n] = words[n];
+    count = n + 1;
+  });
   if (count == 0) return;
   exchanges_ = true;
   server_.take_output(now, OutputChannel::Single, std::span(output_).first(count));
@@ -106,8 +106,9 @@ void CanopenPort::take_output(Time now, const canopen::Words& words, uint16_t wr
 canopen::Words CanopenPort::input(Time /*now*/, uint16_t which) {
   canopen::Words words{};
   const Drive& drive = door_.look().drive();
-  for (size_t n = 0; n < words.size(); ++n)
-    if ((which >> n & 1) != 0) words[n] = n < kProcessWords ? drive.pi_word(n) : drive.further_pi()[n - kProcessWords];
+  canopen::each_word(which, [&](size_t n) {
+    words[n] = n < kProcessWords ? drive.pi_word(n) : drive.further_pi()[n - kProcessWords];
+  });
   return words;
 }
 

@@ -50,20 +50,20 @@ bool CanLine::is_reachable(NodeId from, NodeId to) const {
 
 // --- sending
 
+// That the frame is valid and canonical is seen to where it comes in: send() makes it so, StandingFrames::add() asserts it once
+// for all of its cycles.
 SendStatus CanLine::send_canonical(NodeId node, const Frame& frame, uint64_t tag, bool overtakes) {
-  assert(node < nodes_.size() && tag <= kTagMask && is_valid(frame) && frame == canonical(frame));
+  assert(node < nodes_.size() && tag <= kTagMask);
   Node& n = nodes_[node];
   if (!takes_bus(n)) return SendStatus::NotActive;
   wake();
   const uint64_t ready = static_cast<uint64_t>(queue_.now() / bit_time_) + 1;
   const uint32_t key = arbitration_key(frame);
   const uint64_t wanted = std::max(ready, n.suspended_until);
+  if (overtakes && !n.queue.empty()) withdraw(node, tag);
   if (n.queue.empty()) {
     n.queue.emplace_back(frame, tag, ready);
     if (n.wired) contenders_.join(node, wanted, key);
-  } else if (overtakes) {
-    withdraw(node, tag);
-    return send_canonical(node, frame, tag);
   } else if (n.queue.size() < kSendQueueLimit) {
     queue_behind(node, {frame, tag, ready});
   } else {

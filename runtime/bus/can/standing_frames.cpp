@@ -23,7 +23,8 @@ void StandingFrames::grow(size_t nodes) {
 }
 
 void StandingFrames::add(const StandingFrame& frame) {
-  assert(has_room(1) && frame.at > queue_.now() && frame.cycle != 0 && frame.frame == canonical(frame.frame));
+  assert(has_room(1) && frame.at > queue_.now() && frame.cycle != 0 && is_valid(frame.frame) &&
+         frame.frame == canonical(frame.frame));
   if (frame.at >= frame.until) return;
   begin_with_first();
   frames_.insert(std::upper_bound(frames_.begin(), frames_.end(), frame, before), frame);

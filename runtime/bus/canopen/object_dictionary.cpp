@@ -76,8 +76,7 @@ void ObjectDictionary::set(Address address, uint32_t value) {
 }
 
 void ObjectDictionary::set_outputs(const std::array<uint16_t, objects::kProcessWords>& words, uint16_t which) {
-  for (size_t n = 0; n < words.size(); ++n)
-    if ((which >> n & 1) != 0) entries_[outputs_ + n].value = words[n];
+  each_word(which, [&](size_t n) { entries_[outputs_ + n].value = words[n]; });
 }
 
 }  // namespace ipos::runtime::canopen

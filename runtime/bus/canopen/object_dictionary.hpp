@@ -108,6 +108,13 @@ inline constexpr uint8_t kCobId = 1, kType = 2, kInhibitTime = 3, kEventTimer = 
 inline constexpr uint32_t kOff = 1U << 31, kNoRemote = 1U << 30, kExtended = 1U << 29, kIdMask = 0x7FF;
 }  // namespace objects
 
+// The numbers, from 0, of the process words of which the bit is set, in rising order.
+template <typename Visit>
+void each_word(uint16_t which, Visit visit) {
+  for (unsigned left = which & ((1U << objects::kProcessWords) - 1); left != 0; left &= left - 1)
+    visit(static_cast<size_t>(std::countr_zero(left)));
+}
+
 class ObjectDictionary {
  public:
   explicit ObjectDictionary(uint8_t node);

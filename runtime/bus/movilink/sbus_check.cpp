@@ -132,7 +132,12 @@ void SbusCheck::check_masters(const CanLine& line, const FrameRecord& record,
            fmt::format("{}: {} and {} are masters at the same time; only one may be active in the network",
                        line.name(), line.node_name(exchange.master), line.node_name(record.sender)));
   }
-  open_.push_back({record.sender, *answer, record.end + kSbusReplyTimeout});
+  const Time until = record.end + kSbusReplyTimeout;
+  const auto asks_again = [&](const Exchange& e) { return e.master == record.sender && e.answer == *answer; };
+  if (const auto open = std::find_if(open_.begin(), open_.end(), asks_again); open != open_.end())
+    open->until = until;
+  else
+    open_.push_back({record.sender, *answer, until});
 }
 
 void SbusCheck::check_window(const CanLine& line, const FrameRecord& record, uint8_t address) {
