@@ -77,6 +77,7 @@ bool ProfibusBus::repair(const FaultConfig& config) {
 }
 
 void ProfibusBus::on_frame(const profibus::Line&, NodeId sender, const profibus::Reception& reception) {
+  if (!watched_) return;
   facts_ = {sender, static_cast<uint64_t>(reception.start), static_cast<uint64_t>(reception.end),
             reception.frame ? 0 : 1 + static_cast<uint64_t>(reception.frame.error())};
   facts_.insert(facts_.end(), reception.octets.begin(), reception.octets.end());

@@ -46,7 +46,7 @@ class ProfibusBus final : public Bus, private profibus::LineObserver {
  private:
   class Hand;
 
-  void watch() override {}  // it observes for the journal anyway
+  void watch() override { watched_ = true; }
   void on_frame(const profibus::Line& line, NodeId sender, const profibus::Reception& reception) override;
   void on_line_event(const profibus::Line& line, const profibus::LineEvent& event) override;
 
@@ -55,6 +55,7 @@ class ProfibusBus final : public Bus, private profibus::LineObserver {
   std::unique_ptr<Hand> hand_;
   std::unique_ptr<FmsOperator> fms_operator_;
   std::unique_ptr<LastDpTraffic> last_frames_;
+  bool watched_ = false;         // frames are to be told; it observes for the journal anyway
   std::vector<uint64_t> facts_;  // of the last frame, for tracers
   // Each is told once.
   std::set<std::tuple<profibus::LineEventKind, NodeId, std::optional<OctetFaultKind>>> told_;

@@ -35,7 +35,12 @@ class Octets {
   // Text has them so.
   Octets(const std::vector<uint8_t>& octets) { assign(octets.begin(), octets.end()); }
   operator std::vector<uint8_t>() const { return {begin(), end()}; }
-  Octets(const Octets& other) { assign(other.begin(), other.end()); }
+  Octets(const Octets& other) : size_(other.size_) {
+    if (size_ <= kInPlace)
+      std::copy_n(other.place_.begin(), size_, place_.begin());
+    else
+      more_ = other.more_;
+  }
   Octets& operator=(const Octets& other) {
     if (this != &other) assign(other.begin(), other.end());
     return *this;
