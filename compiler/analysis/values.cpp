@@ -4,6 +4,7 @@
 #include "compiler/analysis/values.hpp"
 
 #include <deque>
+#include <iterator>
 #include <set>
 
 #include "stdlib/language_tables.hpp"
@@ -23,12 +24,6 @@ constexpr int kPatience = 3;  // visits before an interval is widened
 Interval of(int64_t least, int64_t most) {
   // Arithmetic wraps.
   return least < INT32_MIN || most > INT32_MAX ? kAny : Interval{least, most};
-}
-
-Interval joined(const Interval& a, const Interval& b) {
-  if (a.is_empty()) return b;
-  if (b.is_empty()) return a;
-  return {std::min(a.least, b.least), std::max(a.most, b.most)};
 }
 
 Interval product(const Interval& a, const Interval& b) {
@@ -124,6 +119,13 @@ Values::Values(const Graph& graph, uint32_t variables) : graph_(graph), variable
       for (uint32_t v = range.first; v < range.end() && v < variables; ++v)
         if (slots_.try_emplace(v, tracked_.size()).second) tracked_.push_back(v);
     });
+    const Opcode opcode = command.code.opcode;
+    const bool grows = opcode == Opcode::AddHK || opcode == Opcode::SubHK;
+    if (grows || vm::coding(opcode).flow == Flow::Branch) {
+      std::vector<size_t>& slots = grows ? growing_ : compared_;
+      const size_t at = slot(static_cast<uint32_t>(command.code.operands[0]));
+      if (at != kNone && std::find(slots.begin(), slots.end(), at) == slots.end()) slots.push_back(at);
+    }
     for (size_t operand = 0; operand < vm::coding(command.code.opcode).operand_count; ++operand)
       if (vm::coding(command.code.opcode).kinds[operand] == vm::OperandKind::Constant)
         for (const int64_t near : {-1, 0, 1}) constants.insert(std::clamp<int64_t>(command.code.operands[operand] + near, INT32_MIN, INT32_MAX));
@@ -238,15 +240,22 @@ void Values::execute(const Task& task, State& state, size_t number) const {
       state.values[to] = value;
       const int64_t step = adds ? code.operands[1] : -static_cast<int64_t>(code.operands[1]);
       for (Copy& copy : state.copies) {
-        if (copy.of == to) copy.more -= step;
-        if (copy.copy == to) copy.more += step;
+        const int64_t by = (copy.copy == to ? step : 0) - (copy.of == to ? copy.factor * step : 0);
+        copy.more = {copy.more.least + by, copy.more.most + by};
       }
+      return;
+    }
+    if (code.opcode == Opcode::MulHK && code.operands[1] > 0 && !value.is_any()) {
+      state.values[to] = value;
+      std::erase_if(state.copies, [&](const Copy& copy) { return copy.of == to; });
+      for (Copy& copy : state.copies)
+        if (copy.copy == to) copy = {to, copy.of, copy.factor * code.operands[1], {copy.more.least * code.operands[1], copy.more.most * code.operands[1]}};
       return;
     }
     set(state, to, value);
     if (code.opcode == Opcode::SetHH && !is_shared_in(task, static_cast<uint32_t>(code.operands[0])))
       if (const auto from = static_cast<uint32_t>(code.operands[1]); slot(from) != kNone && slot(from) != to && !is_shared_in(task, from))
-        state.copies.push_back({to, slot(from), 0});
+        state.copies.push_back({to, slot(from), 1, {0, 0}});
     return;
   }
   const Interval stored = code.opcode == Opcode::SetiStore ? read(task, state, static_cast<uint32_t>(code.operands[1])) : kAny;
@@ -262,14 +271,15 @@ void Values::set(State& state, size_t slot, const Interval& value) const {
   std::erase_if(state.copies, [&](const Copy& copy) { return copy.copy == slot || copy.of == slot; });
 }
 
-// It is known better now, and so is what it is a copy of.
+// It is known better now, and so is what it is a copy of, and what is a copy of it.
 void Values::narrow(State& state, size_t slot, const Interval& value) const {
   state.values[slot] = value;
   for (const Copy& copy : state.copies) {
-    if (copy.copy != slot) continue;
+    if (copy.copy != slot || copy.factor != 1) continue;
     Interval& of = state.values[copy.of];
-    of = {std::max(of.least, value.least - copy.more), std::min(of.most, value.most - copy.more)};
+    of = {std::max(of.least, value.least - copy.more.most), std::min(of.most, value.most - copy.more.least)};
   }
+  tighten(state);
 }
 
 // What a comparison tells where it jumps, or does not.
@@ -338,18 +348,24 @@ void Values::analyse(Task& task, size_t entry) const {
     bool changed = is_new;
     if (!is_new) {
       State& kept = found->second;
+      const State before = kept;
       const bool widen = ++visits[to] > kPatience;
       for (size_t n = 0; n < state.values.size(); ++n) {
         const Interval old = kept.values[n];
         const Interval now = joined(old, state.values[n]);
         if (now == old) continue;
         kept.values[n] = widen ? widened(old, now) : now;
-        changed = true;
       }
-      const size_t lost = std::erase_if(kept.copies, [&](const Copy& copy) {
-        return std::find(state.copies.begin(), state.copies.end(), copy) == state.copies.end();
+      std::erase_if(kept.copies, [&](Copy& copy) { return !holds(copy, state, true); });
+      std::vector<Copy> more = growing_together(task, before, state);
+      std::copy_if(state.copies.begin(), state.copies.end(), std::back_inserter(more), [&](Copy copy) {
+        return std::find(growing_.begin(), growing_.end(), copy.copy) != growing_.end() && holds(copy, before, false);
       });
-      changed = changed || lost != 0;
+      for (const Copy& copy : more)
+        if (std::none_of(kept.copies.begin(), kept.copies.end(), [&](const Copy& known) { return known.copy == copy.copy && known.of == copy.of; }))
+          kept.copies.push_back(copy);
+      tighten(kept);
+      changed = kept.values != before.values || kept.copies != before.copies;
     }
     if (changed) open.push_back(to);
   };

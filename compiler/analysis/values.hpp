@@ -21,6 +21,13 @@ struct Interval {
   bool operator==(const Interval&) const = default;
 };
 
+// Of either.
+inline Interval joined(const Interval& a, const Interval& b) {
+  if (a.is_empty()) return b;
+  if (b.is_empty()) return a;
+  return {std::min(a.least, b.least), std::max(a.most, b.most)};
+}
+
 // Variables that are written, `first` to `last`.
 struct Span {
   int64_t first = 0;
@@ -44,11 +51,15 @@ class Values {
   bool is_shared(size_t command, uint32_t variable) const;
 
  private:
-  // A variable that was set to another one, which has changed by a constant since: copy == of + more.
+  // A variable that was set to another one, or grows with it in a loop: copy == factor * of + one of `more`.
   struct Copy {
     size_t copy, of;
-    int64_t more;
+    int64_t factor;
+    Interval more;
+    int widened = 0;  // times
     bool operator==(const Copy&) const = default;
+
+    Interval bounds(const Interval& of_value) const;
   };
   struct State {
     std::vector<Interval> values;  // of the tracked variables; none: nobody comes here
@@ -69,6 +80,10 @@ class Values {
   void set(State& state, size_t slot, const Interval& value) const;
   void refine(const Task& task, State& state, const vm::Instruction& branch, bool jumps) const;
   void narrow(State& state, size_t slot, const Interval& value) const;
+  // growth.cpp
+  static void tighten(State& state);
+  std::vector<Copy> growing_together(const Task& task, const State& before, const State& after) const;
+  static bool holds(Copy& copy, const State& state, bool may_grow);
   Interval widened(const Interval& old, const Interval& now) const;
   void analyse(Task& task, size_t entry) const;
   State before(const Task& task, size_t command) const;
@@ -79,6 +94,7 @@ class Values {
   std::vector<bool> leads_;                           // commands that have a state of their own
   std::unordered_map<uint32_t, size_t> slots_;        // tracked: named by a command
   std::vector<uint32_t> tracked_;
+  std::vector<size_t> compared_, growing_;            // slots of variables that end loops, and of those that constants are added to
   std::vector<int64_t> thresholds_;                   // where intervals stop to grow
   std::unordered_map<size_t, std::vector<size_t>> returns_;  // of a function's entry the commands that end it
   std::unordered_map<size_t, std::vector<size_t>> behind_;   // and the commands that its calls go on with

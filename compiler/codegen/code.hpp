@@ -28,6 +28,7 @@ struct Command {
 struct GenerateOptions {
   bool atomic = false;      // variables that others see get their values once, computed aside; else a warning says which do not
   bool as_written = false;  // -O0: none of the forms that take fewer commands than what stands in the source
+  size_t most_held = 6;     // numbers that one loop keeps in temporaries
 };
 
 // An assignment whose intermediate results somebody sees.
@@ -41,6 +42,7 @@ struct FunctionCode {
   std::vector<Command> commands;
   std::vector<size_t> labels;  // command each label stands at
   uint32_t temporaries = 0;
+  bool holds_numbers = false;  // loops of it keep numbers in temporaries
   std::vector<SeenSteps> seen_steps;
 };
 

@@ -1,8 +1,8 @@
-// `for (i = 0; i < 8; i++) a[i] = b[i];` as one COPY and the last value of i, where nobody else looks at i.
+// `for (i = 0; i < 8; i++) a[i] = b[i];` as one COPY and the last value of i, where nobody else looks at i; `a[i] = 0;` as one SET and COPYs
+// that double what is filled, where nobody else writes the elements.
 #include <algorithm>
 
 #include "compiler/codegen/generator.hpp"
-#include "compiler/sema/fold.hpp"
 
 namespace ipos::compiler {
 
@@ -13,33 +13,16 @@ namespace {
 
 constexpr int64_t kMostCopied = 4095;  // variables of a COPY
 
-// i = 0
-std::optional<std::pair<int32_t, int32_t>> begin_of(const checked::ExprPtr& init) {
-  const auto* set = init == nullptr ? nullptr : std::get_if<checked::Assign>(&init->node);
-  if (set == nullptr || set->op || set->target.offset != nullptr || as_constant(*set->value) == nullptr) return std::nullopt;
-  return std::pair(set->target.number, *as_constant(*set->value));
-}
-
-// i < 8, i <= 7, i != 8: the first value that ends the loop.
-std::optional<int64_t> end_of(const checked::ExprPtr& condition, int32_t counter) {
+// i < 8, i <= 7, i != 8; i > 0, i >= 1, i != 0: the first value that ends the loop.
+std::optional<int64_t> end_of(const checked::ExprPtr& condition, int32_t counter, bool up) {
   const auto* node = condition == nullptr ? nullptr : std::get_if<checked::Binary>(&condition->node);
   if (node == nullptr) return std::nullopt;
   const int32_t* variable = as_variable(*node->left);
   const int32_t* limit = as_constant(*node->right);
   if (variable == nullptr || *variable != counter || limit == nullptr) return std::nullopt;
-  if (node->op == BinaryOp::Lt || node->op == BinaryOp::Ne) return *limit;
-  if (node->op == BinaryOp::Le) return int64_t{*limit} + 1;
+  if (node->op == BinaryOp::Ne || node->op == (up ? BinaryOp::Lt : BinaryOp::Gt)) return *limit;
+  if (node->op == (up ? BinaryOp::Le : BinaryOp::Ge)) return int64_t{*limit} + (up ? 1 : -1);
   return std::nullopt;
-}
-
-// i++, ++i, i += 1
-bool counts_by_one(const checked::ExprPtr& step, int32_t counter) {
-  if (step == nullptr) return false;
-  if (const auto* move = std::get_if<checked::Step>(&step->node))
-    return move->place.offset == nullptr && move->place.number == counter && move->delta == 1;
-  const auto* add = std::get_if<checked::Assign>(&step->node);
-  return add != nullptr && add->op == BinaryOp::Add && add->target.offset == nullptr && add->target.number == counter &&
-         as_constant(*add->value) != nullptr && *as_constant(*add->value) == 1;
 }
 
 bool is_element(const checked::Place& place, int32_t counter) {
@@ -63,30 +46,49 @@ bool in_one_symbol(const std::vector<vm::Symbol>& symbols, int64_t first, int64_
 }  // namespace
 
 bool FunctionGenerator::copy_loop(const checked::For& node) {
-  const auto begin = begin_of(node.init);
-  if (!begin) return false;
-  const auto [counter, from] = *begin;
-  const auto to = end_of(node.condition, counter);
+  const auto begin = constant_of(node.init);
+  const auto move = move_of(node.step);
   const checked::Expr* expr = only_expression(*node.body);
-  if (!to || expr == nullptr || !counts_by_one(node.step, counter) || !is_own(counter)) return false;
+  if (!begin || !move || expr == nullptr || (move->by != 1 && move->by != UINT32_MAX)) return false;
+  const auto [counter, from] = *begin;
+  const bool up = move->by == 1;
+  const auto to = end_of(node.condition, counter, up);
+  if (!to || move->variable != counter || !is_own(counter)) return false;
   const auto* assign = std::get_if<checked::Assign>(&expr->node);
-  const auto* load = assign == nullptr || assign->op ? nullptr : std::get_if<checked::Load>(&assign->value->node);
-  if (load == nullptr || !is_element(assign->target, counter) || !is_element(load->place, counter)) return false;
+  if (assign == nullptr || assign->op || !is_element(assign->target, counter)) return false;
 
-  const int64_t count = *to - from;
-  const int64_t target = int64_t{assign->target.number} + from;
-  const int64_t source = int64_t{load->place.number} + from;
-  if (count < 1 || count > kMostCopied) return false;
-  if (!in_one_symbol(program_.symbols, target, count) || !in_one_symbol(program_.symbols, source, count)) return false;
-  for (const int64_t first : {target, source}) {
-    if (counter >= first && counter < first + count) return false;
+  const int64_t count = up ? *to - from : from - *to;
+  const int64_t target = int64_t{assign->target.number} + (up ? from : *to + 1);
+  const auto can_be_part = [&](int64_t first) {
+    if (!in_one_symbol(program_.symbols, first, count) || (counter >= first && counter < first + count)) return false;
     for (int64_t n = first; n < first + count; ++n)
       if (acts_at_once(static_cast<int32_t>(n))) return false;
+    return true;
+  };
+  if (count < 1 || count > kMostCopied || !can_be_part(target)) return false;
+  if (const auto* load = std::get_if<checked::Load>(&assign->value->node); load != nullptr && is_element(load->place, counter)) {
+    const int64_t source = int64_t{load->place.number} + (up ? from : *to + 1);
+    if (!can_be_part(source)) return false;
+    // A loop hands a value on where it comes to an element after it has written it; COPY does not.
+    if (up ? target > source && target < source + count : source > target && source < target + count) return false;
+    emit(Opcode::Copy, expr->span, {static_cast<int32_t>(target), static_cast<int32_t>(source), static_cast<int32_t>(count)});
+  } else if (!fill(*assign->value, counter, static_cast<int32_t>(target), static_cast<int32_t>(count))) {
+    return false;
   }
-  // A loop hands a value on where the target comes behind the source; COPY does not.
-  if (target > source && target < source + count) return false;
-  emit(Opcode::Copy, expr->span, {static_cast<int32_t>(target), static_cast<int32_t>(source), static_cast<int32_t>(count)});
   emit(Opcode::SetHK, node.step->span, {counter, static_cast<int32_t>(*to)});
+  return true;
+}
+
+// The elements that are copied on must stay as they were filled, and so must a variable that they are filled with.
+bool FunctionGenerator::fill(const checked::Expr& with, int32_t counter, int32_t target, int32_t count) {
+  if (!is_simple(with)) return false;
+  if (const int32_t* variable = as_variable(with))
+    if (!stays(*variable) || *variable == counter || (*variable >= target && *variable < target + count)) return false;
+  for (int32_t n = target; n < target + count; ++n)
+    if (!stays(n)) return false;
+  set(target, value(with), with.span);
+  for (int32_t done = 1; done < count; done *= 2)
+    emit(Opcode::Copy, with.span, {target + done, target, std::min(done, count - done)});
   return true;
 }
 

@@ -16,8 +16,10 @@ void FunctionGenerator::effect(const Expr& expr) {
   if (const auto* node = std::get_if<checked::Assign>(&expr.node)) {
     if (!options_.as_written && bit_move(*node, expr.span)) return;
     assign(*node, expr.span);
+    move_held(expr);
   } else if (const auto* move = std::get_if<checked::Step>(&expr.node)) {
     step(*move, expr.span, false);
+    move_held(expr);
   } else if (const auto* comma = std::get_if<checked::Comma>(&expr.node)) {
     effect(*comma->left);
     effect(*comma->right);
@@ -80,7 +82,9 @@ FunctionGenerator::Operand FunctionGenerator::assign_indirect(const checked::Ass
   if (!node.op) {
     const Operand source = value(*node.value);
     int32_t from = source.value;
-    if (source.constant) {
+    if (const Held* kept = source.constant ? held(*node.value) : nullptr) {
+      from = kept->variable;
+    } else if (source.constant) {
       from = temporary();
       set(from, source, span);
     }

@@ -22,7 +22,8 @@ bool one_command(const checked::Expr& condition) {
   return node != nullptr && is_comparison(node->op) && is_simple(*node->left) && is_simple(*node->right);
 }
 
-// for (i = 0; i < 10; ...) is true at first.
+}  // namespace
+
 bool true_after(const checked::ExprPtr& init, const checked::ExprPtr& condition) {
   if (init == nullptr || condition == nullptr) return false;
   const auto* set = std::get_if<checked::Assign>(&init->node);
@@ -35,8 +36,6 @@ bool true_after(const checked::ExprPtr& init, const checked::ExprPtr& condition)
   return first && variable && limit && *variable == set->target.number && !acts_at_once(*variable) &&
          fold(test->op, *first, *limit) == 1;
 }
-
-}  // namespace
 
 FunctionCode FunctionGenerator::generate() {
   assert(code_.commands.empty());  // once
@@ -82,58 +81,48 @@ void FunctionGenerator::emit_stmt(const checked::If& node, Span span) {
 }
 
 void FunctionGenerator::emit_stmt(const checked::While& node, Span) {
-  loop(node.condition, nullptr, *node.body, false);
+  loop({nullptr, node.condition, nullptr, node.body}, false);
 }
 
 void FunctionGenerator::emit_stmt(const checked::For& node, Span) {
   if (!options_.as_written && copy_loop(node)) return;
   if (node.init != nullptr) effect(*node.init);
-  loop(node.condition, node.step, *node.body, true_after(node.init, node.condition));
+  loop({node.init, node.condition, node.step, node.body}, true_after(node.init, node.condition));
 }
 
-void FunctionGenerator::loop(const checked::ExprPtr& condition, const checked::ExprPtr& step,
-                             const checked::Stmt& body, bool first_test_known) {
+void FunctionGenerator::loop(const LoopParts& parts, bool first_test_known) {
+  const Hold hold(top_);
+  const size_t held = held_.size(), counters = counters_.size();
+  const checked::ExprPtr& condition = parts.condition;
   const int top = new_label();
   const int test = new_label();
   const int next = new_label();
   const int end = new_label();
   const bool endless = condition == nullptr || (as_constant(*condition) && *as_constant(*condition) != 0);
-  if (!endless && !first_test_known) {
-    if (one_command(*condition))
-      branch(*condition, end, false);
-    else
-      jump(test, condition->span);
-  }
+  const bool tests_first = !endless && !first_test_known;
+  const bool tests_twice = tests_first && one_command(*condition);
+  if (tests_twice) branch(*condition, end, false);
+  if (!endless) hold_numbers(parts);
+  if (tests_first && !tests_twice) jump(test, condition->span);
   place(top);
   breaks_.push_back(end);
   continues_.push_back(next);
-  statement(body);
+  statement(*parts.body);
   breaks_.pop_back();
   continues_.pop_back();
   place(next);
-  if (step != nullptr) effect(*step);
+  if (parts.step != nullptr) effect(*parts.step);
   place(test);
   if (endless)
-    jump(top, condition != nullptr ? condition->span : body.span);
+    jump(top, condition != nullptr ? condition->span : parts.body->span);
   else
     branch(*condition, top, true);
   place(end);
+  held_.erase(held_.begin() + static_cast<std::ptrdiff_t>(held), held_.end());
+  counters_.erase(counters_.begin() + static_cast<std::ptrdiff_t>(counters), counters_.end());
 }
 
-void FunctionGenerator::emit_stmt(const checked::DoWhile& node, Span) {
-  const int top = new_label();
-  const int next = new_label();
-  const int end = new_label();
-  place(top);
-  breaks_.push_back(end);
-  continues_.push_back(next);
-  statement(*node.body);
-  breaks_.pop_back();
-  continues_.pop_back();
-  place(next);
-  branch(*node.condition, top, true);
-  place(end);
-}
+void FunctionGenerator::emit_stmt(const checked::DoWhile& node, Span) { loop({nullptr, node.condition, nullptr, node.body}, true); }
 
 void FunctionGenerator::emit_stmt(const checked::Switch& node, Span span) {
   std::vector<int> labels;

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "compiler/codegen/code.hpp"
+#include "compiler/codegen/linear.hpp"
+#include "compiler/codegen/loops.hpp"
 #include "compiler/sema/checked.hpp"
 
 namespace ipos::compiler {
@@ -52,8 +54,7 @@ class FunctionGenerator {
   void emit_stmt(const checked::Break& node, Span span);
   void emit_stmt(const checked::Continue& node, Span span);
   void emit_stmt(const checked::Return& node, Span span);
-  void loop(const checked::ExprPtr& condition, const checked::ExprPtr& step, const checked::Stmt& body,
-            bool first_test_known);
+  void loop(const LoopParts& parts, bool first_test_known);
   int new_label();
   void place(int label);
   Command& emit(vm::Opcode opcode, Span span, std::initializer_list<int32_t> operands = {});
@@ -101,16 +102,31 @@ class FunctionGenerator {
   bool bit_move(const checked::If& node, Span span);
   bool bit_move(const checked::Assign& node, Span span);
   bool copy_loop(const checked::For& node);
+  bool fill(const checked::Expr& with, int32_t counter, int32_t target, int32_t count);
 
   // indexes.cpp: the number of an element, computed once for its uses in a statement
   struct Pointer {
-    const checked::Expr* offset = nullptr;
+    checked::ExprPtr offset = nullptr;
     int32_t variable = 0;          // a temporary: number + offset
     std::optional<int32_t> number;  // none: not computed yet
   };
   void find_pointers(const checked::Expr& expr);
   Pointer* pointer_to(const checked::Place& place);
   int32_t moved_to(Pointer& pointer, int32_t number, Span span);
+
+  // held_numbers.cpp: numbers of elements, and products, that grow with the counter of a loop and are kept in temporaries while it runs
+  struct Held {
+    Linear number;
+    int32_t variable = 0;  // a temporary that has this value
+  };
+  void hold_numbers(const LoopParts& loop);
+  bool may_hold(const LoopScan& scan, const Linear& number) const;
+  size_t commands_of(const LoopScan::Use& use);
+  void start_held(const Linear& number, const LoopParts& loop);
+  void move_held(const checked::Expr& expr);
+  template <typename Node>  // an expression or a place
+  const Held* held(const Node& node) const;
+  void number_into(const checked::Place& place, int32_t target, Span span);
 
   // steps.cpp: where an expression of several commands is computed
   struct Assignment {
@@ -134,6 +150,8 @@ class FunctionGenerator {
   std::vector<int> continues_;
   std::vector<std::vector<int>> switches_;  // labels of the cases
   std::vector<Pointer> pointers_;           // of the statement
+  std::vector<Held> held_;                  // of the loops around
+  std::vector<Counter> counters_;           // of the loops around that keep it in bounds
 };
 
 // Whether evaluating `expr` may read or write a variable; indirect access and calls may do either to any.
@@ -142,6 +160,9 @@ struct Uses {
   bool write = false;
 };
 Uses uses(const checked::Expr& expr, int32_t variable);
+
+// for (i = 0; i < 10; ...) is true at first.
+bool true_after(const checked::ExprPtr& init, const checked::ExprPtr& condition);
 
 // A variable whose every value the unit acts on at once: it never shows an intermediate result.
 bool acts_at_once(int32_t variable);

@@ -44,7 +44,7 @@ const checked::Place* place_of(const Expr& expr) {
 void FunctionGenerator::find_pointers(const Expr& expr) {
   const auto* whole = std::get_if<checked::Assign>(&expr.node);
   if (options_.as_written || whole == nullptr) return;
-  std::vector<const Expr*> offsets;
+  std::vector<checked::ExprPtr> offsets;
   bool is_straight = true;  // each of its parts is executed once, and only the last one writes
   checked::walk(expr, [&](const Expr& part) {
     const auto* binary = std::get_if<checked::Binary>(&part.node);
@@ -52,12 +52,12 @@ void FunctionGenerator::find_pointers(const Expr& expr) {
                    std::holds_alternative<checked::Load>(part.node) || std::holds_alternative<checked::Unary>(part.node) ||
                    (binary != nullptr && binary->op != BinaryOp::LogicalAnd && binary->op != BinaryOp::LogicalOr);
     const checked::Place* place = place_of(part);
-    if (place != nullptr && is_computed(*place)) offsets.push_back(place->offset);
+    if (place != nullptr && is_computed(*place) && held(*place) == nullptr) offsets.push_back(place->offset);
   });
   if (!is_straight) return;
   for (size_t n = 0; n < offsets.size(); ++n) {
     const Expr& offset = *offsets[n];
-    const auto same = [&](const Expr* other) { return equal(offset, *other); };
+    const auto same = [&](checked::ExprPtr other) { return equal(offset, *other); };
     const auto here = offsets.begin() + static_cast<std::ptrdiff_t>(n);
     if (!is_plain(offset) || as_constant(offset) != nullptr || std::any_of(offsets.begin(), here, same)) continue;
     if (std::none_of(here + 1, offsets.end(), same)) continue;
@@ -66,7 +66,7 @@ void FunctionGenerator::find_pointers(const Expr& expr) {
       const int32_t* variable = as_variable(part);
       same_for_all &= variable == nullptr || (stays(*variable) && (whole->target.offset != nullptr || whole->target.number != *variable));
     });
-    if (same_for_all) pointers_.push_back({&offset, temporary(), std::nullopt});
+    if (same_for_all) pointers_.push_back({offsets[n], temporary(), std::nullopt});
   }
 }
 
@@ -78,10 +78,11 @@ FunctionGenerator::Pointer* FunctionGenerator::pointer_to(const checked::Place& 
 }
 
 int32_t FunctionGenerator::moved_to(Pointer& pointer, int32_t number, Span span) {
-  if (!pointer.number) into(*pointer.offset, pointer.variable);
   // Modulo 2^32, as the unit adds.
-  const uint32_t way = static_cast<uint32_t>(number) - static_cast<uint32_t>(pointer.number.value_or(0));
-  operate(BinaryOp::Add, pointer.variable, {true, static_cast<int32_t>(way)}, span);
+  if (pointer.number)
+    operate(BinaryOp::Add, pointer.variable, {true, static_cast<int32_t>(static_cast<uint32_t>(number) - static_cast<uint32_t>(*pointer.number))}, span);
+  else
+    number_into({number, pointer.offset}, pointer.variable, span);
   pointer.number = number;
   return pointer.variable;
 }

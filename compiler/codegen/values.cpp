@@ -112,6 +112,7 @@ FunctionGenerator::Operand FunctionGenerator::value(const Expr& expr) {
     effect(*node->left);
     return value(*node->right);
   }
+  if (const Held* kept = held(expr)) return {false, kept->variable};
   const int32_t result = temporary();
   into(expr, result);
   return {false, result};
@@ -127,7 +128,7 @@ int32_t FunctionGenerator::variable(const Expr& expr) {
 
 void FunctionGenerator::into(const Expr& expr, int32_t target) {
   const Hold hold(top_);
-  if (is_simple(expr)) return set(target, value(expr), expr.span);
+  if (is_simple(expr) || held(expr) != nullptr) return set(target, value(expr), expr.span);
   if (const auto* node = std::get_if<checked::Load>(&expr.node))
     return load_into(node->place, target, expr.span);
   if (const auto* node = std::get_if<checked::Conditional>(&expr.node))
@@ -219,9 +220,8 @@ void FunctionGenerator::conditional_into(const checked::Conditional& node, int32
 
 void FunctionGenerator::load_into(const checked::Place& place, int32_t target, Span span) {
   int32_t from = 0;
-  if (is_temporary(target) && !is_simple(*place.offset) && pointer_to(place) == nullptr) {
-    into(*place.offset, target);
-    operate(BinaryOp::Add, target, {true, place.number}, span);
+  if (is_temporary(target) && !is_simple(*place.offset) && pointer_to(place) == nullptr && held(place) == nullptr) {
+    number_into(place, target, span);
     from = target;
   } else {
     from = address(place, span);
@@ -231,11 +231,11 @@ void FunctionGenerator::load_into(const checked::Place& place, int32_t target, S
 
 // The variable that holds the number of a place.
 int32_t FunctionGenerator::address(const checked::Place& place, Span span) {
+  if (const Held* kept = held(place)) return kept->variable;
   if (Pointer* pointer = pointer_to(place)) return moved_to(*pointer, place.number, span);
   if (place.number == 0) return variable(*place.offset);
   const int32_t result = temporary();
-  into(*place.offset, result);
-  operate(BinaryOp::Add, result, {true, place.number}, span);
+  number_into(place, result, span);
   return result;
 }
 

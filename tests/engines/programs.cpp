@@ -7,6 +7,7 @@
 
 #include "compiler/compile.hpp"
 #include "tests/engines/pair.hpp"
+#include "tests/generated/forms.hpp"
 #include "tests/generated/program_generator.hpp"
 #include "tests/generated/source_text.hpp"
 
@@ -34,10 +35,10 @@ std::optional<std::string> read_text(const std::string& path) {
 
 namespace {
 
-void add(std::vector<EngineProgram>& programs, const char* what, std::vector<uint32_t> code,
+void add(std::vector<EngineProgram>& programs, const std::string& what, std::vector<uint32_t> code,
          const vm::Limits& limits, uint64_t seed) {
   if (!code.empty())
-    programs.push_back({what + (" " + std::to_string(seed)), std::move(code), limits, seed, kOrders});
+    programs.push_back({what + " " + std::to_string(seed), std::move(code), limits, seed, kOrders});
 }
 
 }  // namespace
@@ -52,15 +53,18 @@ std::vector<EngineProgram> assembled_programs_of(uint64_t seed) {
 
 std::vector<EngineProgram> programs_of(uint64_t seed) {
   std::vector<EngineProgram> programs = assembled_programs_of(seed);
-  Program program = generate_program(seed);
-  compiler::CompileOptions options;
-  options.unit = stdlib::find_unit(std::string_view(program.unit));
-  const compiler::Compilation made = compiler::compile("generated.IPC", "", source_text(program), options);
-  if (made.image) {
+  const auto add_source = [&](const std::string& what, const std::string& text, std::string_view unit) {
+    compiler::CompileOptions options;
+    options.unit = stdlib::find_unit(unit);
+    const compiler::Compilation made = compiler::compile("generated.IPC", "", text, options);
+    if (!made.image) return;
     const vm::Limits limits = limits_of(*options.unit);
-    add(programs, "generated", made.image->code, limits, seed);
-    add(programs, "generated with interrupts", with_interrupts(made.image->code, limits, seed), limits, seed);
-  }
+    add(programs, what, made.image->code, limits, seed);
+    add(programs, what + " with interrupts", with_interrupts(made.image->code, limits, seed), limits, seed);
+  };
+  Program program = generate_program(seed);
+  add_source("generated", source_text(program), program.unit);
+  add_source("forms", forms_program(seed), "mdxb");
   return programs;
 }
 

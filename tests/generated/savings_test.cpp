@@ -7,10 +7,10 @@
 #include <cstdio>
 #include <map>
 #include <memory>
-#include <set>
 
 #include "compiler/compile.hpp"
 #include "compiler/diag/render.hpp"
+#include "tests/generated/forms.hpp"
 #include "tests/generated/pcg.hpp"
 #include "tests/generated/program_generator.hpp"
 #include "tests/generated/source_text.hpp"
@@ -21,105 +21,13 @@
 namespace ipos::tests {
 namespace {
 
-// Random statements on the variables of one root, which have its letter in front.
-class Forms {
- public:
-  Forms(Pcg& random, std::string letter) : random_(random), letter_(std::move(letter)) {}
-
-  std::string declarations() const {
-    const std::string& l = letter_;
-    return fmt::format("long {0}x, {0}y, {0}o, {0}i, {0}a[8], {0}b[8];\n{0}T {0}t[4];\n", l);
-  }
-  std::string type() const { return fmt::format("typedef struct {{ long p; long q; long r; }} {}T;\n", letter_); }
-
-  std::string statements(int count) {
-    std::string text;
-    for (int n = 0; n < count; ++n) text += statement();
-    return text;
-  }
-
- private:
-  std::string name(const char* variable) const { return letter_ + variable; }
-  std::string one_of(std::initializer_list<std::string> texts) {
-    return *(texts.begin() + random_.below(static_cast<int>(texts.size())));
-  }
-  std::string simple() { return one_of({name("x"), name("y"), name("o")}); }
-  std::string number() {
-    if (random_.one_in(8)) return one_of({"2147483647", "-2147483648", "-1", "65535"});
-    return std::to_string(random_.between(-9, 20));
-  }
-  std::string index() { return fmt::format("{} & 3", simple()); }
-  std::string mask() { return std::to_string(1 << random_.below(5)); }
-  std::string bit_number() { return std::to_string(random_.below(5)); }
-
-  std::string tested_bit() {
-    const std::string x = simple(), m = mask();
-    return one_of({x + " & " + m, "!(" + x + " & " + m + ")", "(" + x + " & " + m + ") != 0", "(" + x + " & " + m + ") == 0",
-                   "(" + x + " & " + m + ") == " + m, "(" + x + " & " + m + ") == " + mask(), x + " >> " + bit_number() + " & 1", x});
-  }
-  std::string bits() {
-    const std::string o = simple(), m = mask(), test = tested_bit();
-    const std::string set = one_of({o + " |= " + m + ";", "{ " + o + " = " + o + " | " + m + "; }"});
-    const std::string clear = one_of({o + " &= ~" + m + ";", "{ " + o + " = " + o + " & ~" + m + "; }"});
-    const std::string k = bit_number();
-    switch (random_.below(5)) {
-      case 0: return "if (" + test + ") " + set + " else " + clear + "\n";
-      case 1: return "if (" + test + ") " + clear + " else " + set + "\n";
-      case 2: return "if (" + test + ") _BitSet(" + o + ", " + k + "); else _BitClear(" + o + ", " + k + ");\n";
-      case 3: return o + " = " + test + " ? " + o + " | " + m + " : " + o + " & ~" + m + ";\n";
-      default: return "if (" + test + ") " + set + " else " + o + " &= ~" + mask() + ";\n";
-    }
-  }
-  std::string copy() {
-    const std::string i = name("i"), to = one_of({name("a"), name("b")}), from = one_of({name("a"), name("b")});
-    const int first = random_.below(4), last = random_.between(first, 8);
-    return fmt::format("for ({0} = {1}; {0} {2} {3}; {4}) {5}[{0}] = {6}[{0}];\n{7} += {0};\n", i, first, one_of({"<", "!=", "<"}), last,
-                       one_of({i + "++", "++" + i, i + " += 1"}), to, from, simple());
-  }
-  std::string element() {
-    const std::string i = name("i");
-    return one_of({name("a") + "[" + i + "]", name("b") + "[" + i + "]", name("t") + "[" + i + "].p", name("t") + "[" + i + "].q",
-                   name("t") + "[" + i + "].r", name("a") + "[" + i + " + 1]"});
-  }
-  std::string indexes() {
-    const std::string target = random_.one_in(4) ? simple() : element();
-    const std::string value = element() + one_of({" + ", " - ", " * ", " ^ "}) + one_of({element(), number(), simple()}) +
-                              one_of({"", " + " + element(), " * 3"});
-    return name("i") + " = " + index() + ";\n" + target + one_of({" = ", " = ", " += ", " -= ", " ^= "}) + value + ";\n";
-  }
-  std::string choice() {
-    std::string text = "switch (" + one_of({simple(), simple() + " & 15", simple() + " % 7"}) + ")\n{\n";
-    std::set<std::string> used;
-    const int cases = random_.below(12);
-    const int otherwise = random_.between(-1, cases);
-    for (int n = 0; n <= cases; ++n) {
-      if (n == otherwise) text += "default: " + simple() + " += 1000;\n";
-      const std::string label = number();
-      if (n == cases || !used.insert(label).second) continue;
-      text += "case " + label + ": " + simple() + " += " + number() + ";\n" + (random_.one_in(4) ? "" : "break;\n");
-    }
-    return text + "}\n";
-  }
-  std::string statement() {
-    switch (random_.below(6)) {
-      case 0: return bits();
-      case 1: return copy();
-      case 2: return indexes();
-      case 3: return choice();
-      case 4: return name("a") + "[" + index() + "] = " + simple() + ";\n";
-      default: return simple() + one_of({" = ", " += ", " ^= "}) + number() + ";\n";
-    }
-  }
-
-  Pcg& random_;
-  std::string letter_;
-};
-
 struct End {
   std::vector<int32_t> variables;  // but for the temporaries
   uint16_t fault = 0;
   uint64_t commands = 0;
 };
+
+constexpr uint64_t kMostCommands = 300'000;
 
 const stdlib::UnitType& mdxb() { return *stdlib::find_unit(std::string_view("mdxb")); }
 
@@ -134,7 +42,7 @@ End run(const std::string& text, bool as_written) {
   const auto image = vm::verify(made.image->code, {mdxb().variables, mdxb().program_words, mdxb().tasks, mdxb().call_depth}, {}).image;
   vm::Machine machine(*image, {});
   machine.start();
-  out.commands = machine.run(1, 20'000'000).commands;
+  out.commands = machine.run(1, kMostCommands).commands;
   out.fault = machine.fault().number;
   out.variables.assign(machine.variables().begin(), machine.variables().end());
   std::fill(out.variables.begin() + 900, out.variables.begin() + 1000, 0);
@@ -143,12 +51,13 @@ End run(const std::string& text, bool as_written) {
 
 TEST(Savings, DoWhatIsWritten) {
   uint64_t saved = 0, written = 0;
+  int compared = 0;
   for (uint64_t seed = 1; seed <= 3000 && !::testing::Test::HasFailure(); ++seed) {
-    Pcg random(seed);
-    Forms forms(random, "m");
-    const std::string text = "#include <constb.h>\n#pragma var H900 H999\n" + forms.type() + forms.declarations() + "main()\n{\n" +
-                             forms.statements(random.between(5, 30)) + "}\n";
+    const std::string text = forms_program(seed);
     const End fewer = run(text, false), all = run(text, true);
+    // A loop whose counter is written through an element beyond its array may go on for ever.
+    if (fewer.commands == kMostCommands || all.commands == kMostCommands) continue;
+    ++compared;
     EXPECT_EQ(fewer.fault, all.fault) << "seed " << seed << "\n" << text;
     EXPECT_EQ(fewer.variables, all.variables) << "seed " << seed << "\n" << text;
     saved += all.commands - fewer.commands;
@@ -156,6 +65,7 @@ TEST(Savings, DoWhatIsWritten) {
   }
   std::printf("%.1f %% of the commands saved\n", 100.0 * static_cast<double>(saved) / static_cast<double>(written));
   EXPECT_GT(saved, written / 10);
+  EXPECT_GT(compared, 2900);
 }
 
 // The programs of the other tests, which have no such forms on purpose.
@@ -225,8 +135,8 @@ TEST(Savings, BesideTasksAndAnInterrupt) {
       const vm::Host host{nullptr, [](void*, vm::Machine&, int, const vm::Instruction&) noexcept { return vm::HostReply{}; }};
       auto machine = std::make_unique<vm::Machine>(*image, host);
       machine->start();
-      const auto rate = static_cast<uint32_t>(1 + seed % 9);
-      for (int ms = 0; ms < 3000; ++ms) vm::run_tick(*machine, vm::Rates{{rate, rate + 1, 20}});
+      const auto rate = static_cast<uint32_t>(3 + seed % 9);
+      for (int ms = 0; ms < 8000; ++ms) vm::run_tick(*machine, vm::Rates{{rate, rate + 1, 20}});
       std::map<std::string, int32_t>& end = ends.emplace_back();
       for (const vm::Symbol& symbol : made.image->symbols)
         for (uint32_t n = 0; n < symbol.count; ++n) end[fmt::format("{}[{}]", symbol.name, n)] = machine->variables()[symbol.variable + n];
@@ -234,8 +144,10 @@ TEST(Savings, BesideTasksAndAnInterrupt) {
       EXPECT_EQ(end["counted0[0]"] + end["counted1[0]"] + end["counted2[0]"], end["turns[0]"]) << "seed " << seed;
       for (const char* name : {"shared[0]", "next[0]", "counted0[0]", "counted1[0]", "counted2[0]", "request.IntEvent[0]"}) end.erase(name);
     }
-    if (ends[0]["turns[0]"] != ends[1]["turns[0]"] || ends[0]["uTurns[0]"] != ends[1]["uTurns[0]"] || ends[0]["vTurns[0]"] != ends[1]["vTurns[0]"] ||
-        ends[0]["wTurns[0]"] != ends[1]["wTurns[0]"]) continue;  // not done in time
+    const auto is_done = [](std::map<std::string, int32_t>& end) {
+      return end["turns[0]"] == 20 && end["uTurns[0]"] == 20 && end["vTurns[0]"] == 20 && end["wTurns[0]"] == 20;
+    };
+    if (!is_done(ends[0]) || !is_done(ends[1])) continue;
     EXPECT_EQ(ends[0], ends[1]) << "seed " << seed << "\n" << text;
     interrupted += ends[0]["wTurns[0]"] != 0;
     ++compared;
