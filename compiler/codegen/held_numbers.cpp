@@ -20,6 +20,9 @@ std::optional<int32_t> known_at_first(const checked::ExprPtr& init, int32_t vari
   return known && known->first == variable && !acts_at_once(variable) ? std::optional(known->second) : std::nullopt;
 }
 
+// A term that can be taken as it is comes first, then one that can be taken from a constant.
+int order(const Term& term) { return term.factor == 1 ? 0 : term.factor == UINT32_MAX ? 1 : 2; }
+
 }  // namespace
 
 template <typename Node>
@@ -100,14 +103,13 @@ void FunctionGenerator::start_held(const Linear& number, const LoopParts& loop) 
     if (const auto known = known_at_first(loop.init, term.variable))
       constant += term.factor * static_cast<uint32_t>(*known);
     else if (term.factor != 0)
-      terms.push_back(term);
+      terms.insert(order(term) < (terms.empty() ? 0 : order(terms.front())) ? terms.begin() : terms.end(), term);
   }
   const auto near = std::find_if(held_.begin(), held_.end(), [&](const Held& one) { return one.number.terms == number.terms; });
   if (!terms.empty() && near != held_.end()) {
     constant = number.constant - near->number.constant;
     terms = {{near->variable, 1}};
   }
-  std::sort(terms.begin(), terms.end(), [](const Term& a, const Term& b) { return a.factor != b.factor && (a.factor == 1 || (a.factor == UINT32_MAX && b.factor != 1)); });
   const Hold hold(top_);
   const bool begins_with_constant = terms.empty() || terms.front().factor == UINT32_MAX;
   if (begins_with_constant) set(variable, {true, static_cast<int32_t>(constant)}, span);

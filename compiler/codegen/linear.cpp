@@ -1,7 +1,6 @@
 // Linear forms of expressions and places; statements that move a variable by a constant.
 #include "compiler/codegen/linear.hpp"
 
-#include <algorithm>
 #include <cstddef>
 
 #include "compiler/codegen/generator.hpp"
@@ -13,24 +12,21 @@ using checked::Expr;
 
 namespace {
 
+// Both are in the order of their variables.
 std::optional<Linear> sum(const Linear& a, const Linear& b, uint32_t times) {
-  std::array<Term, 2 * Linear::kMostTerms> all{};
-  size_t count = 0;
-  for (const Term& term : a.terms)
-    if (term.factor != 0) all[count++] = term;
-  for (const Term& term : b.terms) {
-    const auto same = std::find_if(all.begin(), all.begin() + count, [&](const Term& one) { return one.variable == term.variable; });
-    if (term.factor * times == 0) continue;
-    if (same == all.begin() + count)
-      all[count++] = {term.variable, term.factor * times};
-    else
-      same->factor += term.factor * times;
-  }
-  const auto end = std::remove_if(all.begin(), all.begin() + count, [](const Term& term) { return term.factor == 0; });
-  if (end - all.begin() > static_cast<std::ptrdiff_t>(Linear::kMostTerms)) return std::nullopt;
-  std::sort(all.begin(), end, [](const Term& one, const Term& other) { return one.variable < other.variable; });
   Linear out{{}, a.constant + b.constant * times};
-  std::copy(all.begin(), end, out.terms.begin());
+  size_t count = 0, left = 0, right = 0;
+  const auto is_left = [](const Linear& one, size_t at) { return at < Linear::kMostTerms && one.terms[at].factor != 0; };
+  while (is_left(a, left) || is_left(b, right)) {
+    const bool from_a = is_left(a, left) && (!is_left(b, right) || a.terms[left].variable <= b.terms[right].variable);
+    const bool from_b = is_left(b, right) && (!is_left(a, left) || b.terms[right].variable <= a.terms[left].variable);
+    Term term{from_a ? a.terms[left].variable : b.terms[right].variable, 0};
+    if (from_a) term.factor += a.terms[left++].factor;
+    if (from_b) term.factor += b.terms[right++].factor * times;
+    if (term.factor == 0) continue;
+    if (count == Linear::kMostTerms) return std::nullopt;
+    out.terms[count++] = term;
+  }
   return out;
 }
 

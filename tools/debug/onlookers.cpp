@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tools/debug/console.hpp"
+#include "tools/debug/onlooker_share.hpp"
 #include "tools/lsp_base/transport.hpp"
 #include "tools/running/onlooker.hpp"
 
@@ -19,8 +20,6 @@ namespace {
 constexpr size_t kMostOnlookers = 8;
 constexpr size_t kLongestLine = size_t{1} << 20;     // of what an onlooker asks
 constexpr size_t kMostUnread = size_t{16} << 20;     // answers that it does not fetch
-constexpr std::chrono::milliseconds kBetween{2};     // looks at the port
-constexpr int kShare = 10;                           // one part of so many of the time goes to answers, at most
 constexpr std::chrono::seconds kShownAgain{1};       // in an editor
 
 // What one of them has asked for, in the order of its requests.
@@ -95,7 +94,7 @@ class RunPort final : public Onlooker {
 
   void look() override {
     const auto now = Clock::now();
-    if (now < next_) return;
+    if (!share_.is_due(now)) return;
     if (auto peer = port_->accept(); peer && clients_.size() < kMostOnlookers) {
       clients_.push_back(std::make_unique<Client>());
       clients_.back()->peer = std::move(peer);
@@ -103,7 +102,7 @@ class RunPort final : public Onlooker {
     const bool again = now - shown_ >= kShownAgain;
     if (again) shown_ = now;
     std::erase_if(clients_, [&](const auto& client) { return !serve(*client, again); });
-    next_ = now + std::max<Clock::duration>(kBetween, kShare * (Clock::now() - now));
+    share_.looked(now, Clock::now());
   }
 
  private:
@@ -152,7 +151,8 @@ class RunPort final : public Onlooker {
   std::string file_;
   std::unique_ptr<AttachPort> port_;
   std::vector<std::unique_ptr<Client>> clients_;
-  Clock::time_point next_{}, shown_{};
+  OnlookerShare share_;
+  Clock::time_point shown_{};
 };
 
 }  // namespace
