@@ -9,6 +9,7 @@
 #include <string>
 
 #include "runtime/clock/event_queue.hpp"
+#include "runtime/clock/own_milliseconds.hpp"
 #include "runtime/commands/movilink_command.hpp"
 #include "runtime/commands/positioning_commands.hpp"
 #include "runtime/drive/drive.hpp"
@@ -22,6 +23,7 @@ namespace ipos::runtime {
 // The parts of a station its program can reach.
 struct ProgramServices {
   const EventQueue& clock;
+  const OwnMilliseconds& milliseconds;
   Drive& drive;
   ParameterStore& parameters;
   Timers& timers;

@@ -21,7 +21,7 @@ vm::HostReply start_objects(const ProgramServices& services) {
   if (std::all_of(services.objects.begin(), services.objects.end(), missing))
     return illegal("SCOMON: the station is on no SBus");
   for (VariableObjects* objects : services.objects)
-    if (objects != nullptr) objects->start(services.clock.now() / kMillisecond);
+    if (objects != nullptr) objects->start(services.milliseconds.number(services.clock.now()));
   return {};
 }
 

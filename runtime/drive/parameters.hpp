@@ -88,6 +88,7 @@ struct DriveOptions {
   uint8_t firmware = 16;
   // How long the unit is not ready after power-on. No manual read has a figure; 0 is ours.
   uint32_t start_up_ms = 0;
+  int32_t clock_ppm = 0;      // how much faster its quartz is than the plant's time; slower below 0
   bool mains = true;          // it is switched on with them; without, by its 24 V supply alone
   int32_t type_code = 0;      // P070, whose codes no manual read prints
   bool real_control = false;  // speed and current are what motor and load make of them; else the speed is the setpoint's

@@ -9,7 +9,8 @@ namespace ipos::runtime {
 
 void Pacer::start() {
   assert(!runs_ && inbox_.next() == kNever);  // a telegram waits only for ticks that are pending
-  first_ = done_to_ = queue_.now();
+  done_to_ = queue_.now();
+  milliseconds_.begin(done_to_);
   behind_ = rests_ = false;
   event_ = queue_.schedule(done_to_, source_, *this, 0);
 }
@@ -48,14 +49,14 @@ bool Pacer::run_to(Time last) {
       past.go_to(first);
       if (pace_ == Pace::Lazy)
         if (const Ticks horizon = timed_.horizon(first); horizon != 0) {
-          const auto left = static_cast<uint64_t>((until - first) / kMillisecond + 1);
+          const auto left = static_cast<uint64_t>(milliseconds_.count(until - first) + 1);
           const auto most = static_cast<Ticks>(std::min<uint64_t>(horizon, left));
           const Ticks executed = timed_.advance(first, most);
           assert(executed <= most);
-          done_to_ += static_cast<Time>(executed) * kMillisecond;
+          done_to_ += static_cast<Time>(executed) * milliseconds_.length();
           if (executed != 0) continue;
         }
-      done_to_ += kMillisecond;
+      done_to_ += milliseconds_.length();
       if (!timed_.tick(first)) {
         assert(pace_ == Pace::InTurn && !nested);
         runs_ = false;
@@ -81,7 +82,7 @@ void Pacer::plan(Time now) {
   const Time telegram = timed_.send(now);
   silent_to_ = done_to_;
   if (pace_ == Pace::Lazy && telegram > done_to_)
-    silent_to_ += static_cast<Time>(timed_.silence(done_to_)) * kMillisecond;
+    silent_to_ += static_cast<Time>(timed_.silence(done_to_)) * milliseconds_.length();
   const Time next = std::min(telegram, silent_to_);
   behind_ = next > done_to_;
   rests_ = behind_ && timed_.rests();
@@ -94,11 +95,11 @@ void Pacer::plan(Time now) {
 Time Pacer::last_tick() const {
   const Time now = queue_.now();
   const Time last = begun_tick();
-  return last == now && !queue_.has_passed(source_) ? last - kMillisecond : last;
+  return last == now && !queue_.has_passed(source_) ? last - milliseconds_.length() : last;
 }
 
 // Of this millisecond.
-Time Pacer::begun_tick() const { return queue_.now() - (queue_.now() - first_) % kMillisecond; }
+Time Pacer::begun_tick() const { return milliseconds_.begin_of(queue_.now()); }
 
 void Pacer::catch_up_after_tick() {
   if (!behind_) return;
@@ -117,6 +118,20 @@ void Pacer::touch() {
   if (!behind_ || runs_) return;
   end_rest();
   behind_ = false;
+  queue_.cancel(event_);
+  event_ = queue_.schedule(done_to_, source_, *this, 0);
+}
+
+void Pacer::align(Time behind, Time most) {
+  touch();
+  if (runs_) return;
+  const Time length = milliseconds_.length();
+  Time late = done_to_ - queue_.now() - behind;
+  if (late > length / 2) late -= length;
+  const Time shift = std::clamp(-late, -most, most);
+  if (shift == 0) return;
+  done_to_ += shift;
+  milliseconds_.shift(shift);
   queue_.cancel(event_);
   event_ = queue_.schedule(done_to_, source_, *this, 0);
 }

@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "runtime/clock/event_queue.hpp"
+#include "runtime/clock/own_milliseconds.hpp"
 #include "runtime/pace/inbox.hpp"
 #include "runtime/pace/timed.hpp"
 
@@ -21,9 +22,9 @@ enum class Pace : uint8_t {
 
 class Pacer final : private EventTarget {
  public:
-  // `source` orders its events among those of one time. All must outlive it.
-  Pacer(EventQueue& queue, uint32_t source, Timed& timed, Pace pace)
-      : queue_(queue), source_(source), timed_(timed), pace_(pace) {}
+  // `source` orders its events among those of one time. Ticks come at the begin of each of `milliseconds`. All must outlive it.
+  Pacer(EventQueue& queue, uint32_t source, Timed& timed, Pace pace, OwnMilliseconds& milliseconds)
+      : queue_(queue), source_(source), timed_(timed), pace_(pace), milliseconds_(milliseconds) {}
   Pacer(const Pacer&) = delete;
   Pacer& operator=(const Pacer&) = delete;
 
@@ -55,6 +56,10 @@ class Pacer final : private EventTarget {
   // The tick that stopped in the middle has come to its end.
   void resume();
 
+  // Somebody writes, and the ticks from the next one on move towards coming `behind` this moment and whole milliseconds after
+  // that; by `most` at most.
+  void align(Time behind, Time most);
+
  private:
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
   bool run_to(Time last);
@@ -72,11 +77,11 @@ class Pacer final : private EventTarget {
   uint32_t source_;
   Timed& timed_;
   Pace pace_;
+  OwnMilliseconds& milliseconds_;
   bool behind_ = false;
   bool rests_ = false;
   bool runs_ = false;  // run_to() is under way
   EventId event_ = kNoEvent;
-  Time first_ = 0;      // the first tick since start()
   Time done_to_ = 0;    // the first tick that was not executed
   Time silent_to_ = 0;  // the tick that comes in its turn again
   Inbox inbox_;

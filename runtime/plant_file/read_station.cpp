@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/clock/own_milliseconds.hpp"
 #include "runtime/plant_file/plant_reader.hpp"
 #include "stdlib/plain_text.hpp"
 #include "stdlib/unit_names.hpp"
@@ -43,6 +44,14 @@ void read_start_up(PlantReader& reader, const toml::table& table, uint32_t& ms) 
   const int64_t time = reader.duration(table, "start_up", 0);
   if (time > 60 * kSecond) return reader.error(place_of(*table.get("start_up")), "start_up is at most 60s");
   ms = static_cast<uint32_t>(std::max<int64_t>(time, 0) / kMillisecond);
+}
+
+void read_clock(PlantReader& reader, const toml::table& table, int32_t& ppm) {
+  const toml::node* node = table.get("clock_ppm");
+  if (node == nullptr || !reader.number(*node, "clock_ppm", ppm)) return;
+  constexpr auto kMost = static_cast<int32_t>(OwnMilliseconds::kMostPpm);
+  if (ppm < -kMost || ppm > kMost)
+    reader.error(place_of(*node), fmt::format("clock_ppm is {}..{}", -kMost, kMost), AllowedValues{{}, -kMost, kMost});
 }
 
 // Whether the unit is switched on with its mains, or by its 24 V supply alone (MOVITRAC 31 PROFIBUS, 3.1).
@@ -162,6 +171,7 @@ void read_station(PlantReader& reader, const toml::table& table) {
                      "firmware",
                      "logodrive",
                      "start_up",
+                     "clock_ppm",
                      "mains",
                      "program",
                      "sbus",
@@ -205,6 +215,7 @@ void read_station(PlantReader& reader, const toml::table& table) {
   }
   read_firmware(reader, table, config.options.firmware);
   read_start_up(reader, table, config.options.start_up_ms);
+  read_clock(reader, table, config.options.clock_ppm);
   read_mains(reader, table, config.options.mains);
   read_logodrive(reader, table, config);
   config.program = reader.text(table, "program", "", false);

@@ -72,9 +72,10 @@ Command command_of(Halt halt) {
 
 }  // namespace
 
-PositioningService::PositioningService(Drive& drive, ParameterStore& parameters, Journal& journal,
+PositioningService::PositioningService(const OwnMilliseconds& milliseconds, Drive& drive, ParameterStore& parameters, Journal& journal,
                                        std::string_view station, SourcePlace place)
-    : drive_(drive),
+    : milliseconds_(milliseconds),
+      drive_(drive),
       parameters_(parameters),
       journal_(journal),
       station_(station),
@@ -269,8 +270,8 @@ const PositionControl& PositioningService::order_anew(Time now, std::span<int32_
   }
   const Followed followed{drive_.changes(), changes_};
   // Where the master turns an encoder X14, its position is taken as often as a telegram would bring it (ours).
-  constexpr Time kEvery = 5 * kMillisecond;
-  if (h.size() > kSyncSource && h[kSyncSource] == kActPosExt && drive_.encoders().x14 && now % kEvery == 0) syncs_ = syncs - 1;
+  constexpr int64_t kEvery = 5;
+  if (h.size() > kSyncSource && h[kSyncSource] == kActPosExt && drive_.encoders().x14 && milliseconds_.number(now) % kEvery == 0) syncs_ = syncs - 1;
   read_inputs(h, syncs);
   if (inputs_.reference_start && !positioner_.inputs().reference_start)
     not_ordered(PositioningCause::Reference);
@@ -351,7 +352,7 @@ void PositioningService::show(Time now, std::span<int32_t> h) {
 
 void PositioningService::run_cams(Time now, std::span<int32_t> h) {
   cam_sources_.tick(h);
-  const auto ms = static_cast<uint64_t>(now / kMillisecond);
+  const auto ms = static_cast<uint64_t>(milliseconds_.number(now));
   if (extended_cams_.runs() && !extended_cams_.tick(h, cam_sources_, {positioner_.referenced(), ms}))
     journal_.note(now, Weight::Warning, station_,
                   "GSCAM_EXT: the structure names a variable the unit does not have; this cam controller is "

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "runtime/clock/own_milliseconds.hpp"
 #include "runtime/drive/drive.hpp"
 #include "runtime/journal/journal.hpp"
 #include "runtime/positioning/cams.hpp"
@@ -24,7 +25,7 @@ class PositioningService {
   using SourcePlace = std::function<std::string(uint32_t)>;
 
   // All must outlive it.
-  PositioningService(Drive& drive, ParameterStore& parameters, Journal& journal, std::string_view station,
+  PositioningService(const OwnMilliseconds& milliseconds, Drive& drive, ParameterStore& parameters, Journal& journal, std::string_view station,
                      SourcePlace place);
 
   // Before the drive's tick: what the program wrote, what is to be done. `syncs`: sync telegrams so far.
@@ -127,6 +128,7 @@ class PositioningService {
   std::string place_of(PositioningEvent event) const;
   void not_ordered(PositioningCause kind) { ordered_at_[static_cast<size_t>(kind)].reset(); }
 
+  const OwnMilliseconds& milliseconds_;
   Drive& drive_;
   ParameterStore& parameters_;
   Journal& journal_;

@@ -33,10 +33,10 @@ class CanopenPort final : public StationPort,
     const uint32_t executed = door_.executed();
     const uint16_t counting = door_.counting_words();
     if (std::exchange(seen_, executed) != executed || node_->follows(counting)) node_->unit_changed(now);
-    const int64_t ms = now / kMillisecond;
-    const int64_t due = objects_.tick(ms, door_.variables_in_turn());
-    if (node_->follows(counting)) return now + kMillisecond;
-    return due == INT64_MAX ? kNever : now + (due - ms) * kMillisecond;
+    const OwnMilliseconds& own = door_.milliseconds();
+    const int64_t due = objects_.tick(own.number(now), door_.variables_in_turn());
+    if (node_->follows(counting)) return now + own.length();
+    return due == INT64_MAX ? kNever : own.begin_of(due, now);
   }
   bool has_waiting_frames() const override { return line_.has_waiting(node()); }
 

@@ -101,18 +101,18 @@ void SbusPort::note(Time now, Weight weight, std::string text) {
 
 Time SbusPort::lead(Time now) {
   group_master_.tick(now);
-  objects_.tick(now / kMillisecond, door_.variables_in_turn());
-  return now + kMillisecond;
+  objects_.tick(door_.milliseconds().number(now), door_.variables_in_turn());
+  return now + door_.milliseconds().length();
 }
 
 // Where all of its objects find room with the line.
 Time SbusPort::tick_at_rest(Time now, Time until) {
   const Time next = tick(now);
   StandingFrames& standing = line_.standing();
-  if (next >= until || !standing.has_room(objects_.sending())) return next;
-  const int64_t ms = now / kMillisecond;
+  const OwnMilliseconds& own = door_.milliseconds();
+  if (next >= until || !own.is_exact() || !standing.has_room(objects_.sending())) return next;
   objects_.leave(door_.variables_in_turn(), [&](uint32_t tag, const Frame& frame, int64_t due, uint32_t cycle) {
-    standing.add({now + (due - ms) * kMillisecond, until, frame, tag, cycle, source_, node()});
+    standing.add({own.begin_of(due, now), until, frame, tag, cycle, source_, node()});
   });
   line_sends_ = true;
   return kNever;

@@ -55,10 +55,9 @@ class SbusPort final : public StationPort, private CanNode, private SlaveObserve
   Time tick(Time now) override {
     if (leads()) [[unlikely]]
       return lead(now);
-    const int64_t ms = now / kMillisecond;
-    const int64_t due = objects_.tick(ms, door_.variables_in_turn());
-    // A unit that was switched on between two whole milliseconds keeps its ticks there.
-    return due == INT64_MAX ? kNever : now + (due - ms) * kMillisecond;
+    const OwnMilliseconds& own = door_.milliseconds();
+    const int64_t due = objects_.tick(own.number(now), door_.variables_in_turn());
+    return due == INT64_MAX ? kNever : own.begin_of(due, now);
   }
   Time tick_at_rest(Time now, Time until) override;
   void rest_ends() override {

@@ -15,7 +15,7 @@ Station::Station(EventQueue& queue, uint32_t source, const StationConfig& config
       source_(source),
       unit_(queue, {config.name, *config.unit, config.machine, config.options}, std::move(program), journal,
             rates, execution),
-      pacer_(queue, source, *this, execution.pace),
+      pacer_(queue, source, *this, execution.pace, unit_.milliseconds()),
       config_(config),
       lines_(lines),
       journal_(journal) {

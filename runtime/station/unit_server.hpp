@@ -34,11 +34,7 @@ class UnitServer final : public ParameterServer, public ProcessDataServer, publi
   }
   ProcessWords input(Time /*now*/) override { return door_.look().drive().pi(); }
   ProcessWords input_after_tick(Time /*now*/) override { return door_.look_after_tick().drive().pi(); }
-  // Only who follows a master minds.
-  void synchronize(Time now) override {
-    Unit* const going_on = door_.while_it_goes_on();
-    (going_on != nullptr ? *going_on : door_.touch()).server().synchronize(now);
-  }
+  void synchronize(Time now) override { door_.synchronize(now); }
   ProcessDataServer& rs485_data() { return rs485_data_; }
   // What telegrams wanted and did not get, in words; each is told once.
   std::vector<std::string> take_reasons() {

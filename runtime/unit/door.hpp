@@ -37,10 +37,19 @@ class Door final {
     return ticks_.goes_on() ? &unit_ : nullptr;
   }
 
+  // A SYNC came, and its process data have been taken. Only who follows a master, or the SYNC itself, minds.
+  void synchronize(Time now) const {
+    Unit* const going_on = while_it_goes_on();
+    (going_on != nullptr ? *going_on : touch()).server().synchronize(now);
+    if (unit_.server().follows_sync()) pacer_.align(kBehindSync, kMostShift);
+  }
+
   // Ticks are still to be executed.
   bool is_behind() const { return pacer_.behind(); }
   // Grows with each millisecond that has executed more than counting.
   uint32_t executed() const { return unit_.executed(); }
+  // Its milliseconds, which may not be those of the plant.
+  const OwnMilliseconds& milliseconds() const { return unit_.milliseconds(); }
   // PI words that may change in the others, PI1 in bit 0.
   uint16_t counting_words() const { return unit_.drive().counting_words(); }
   // There is something to tell about what telegrams wanted.
@@ -69,6 +78,10 @@ class Door final {
   std::span<int32_t> variables_in_turn() const { return unit_.variables(); }
 
  private:
+  // What a SYNC has brought counts in the millisecond behind it, which a SYNC shifts as much as a quartz that is wrong by 1000 ppm
+  // loses between two that are 20 ms apart (both ours).
+  static constexpr Time kBehindSync = 250 * kMicrosecond, kMostShift = 20 * kMicrosecond;
+
   Unit& unit_;
   ManyTicks& ticks_;
   Pacer& pacer_;

@@ -34,7 +34,7 @@ bool ManyTicks::tick(Time now) {
   left_ = 0;
   touched_ = false;
   tick_in_full(now);
-  if (mode_ == Mode::InFull) begin_moving(now + kMillisecond);
+  if (mode_ == Mode::InFull) begin_moving(now + length_);
   return true;
 }
 
@@ -72,7 +72,7 @@ Ticks ManyTicks::move(Time first, Ticks most) {
   }
   mode_ = Mode::InFull;
   left_ = 0;
-  if (moving_.in_vain()) moving_backoff_.fail(first + kMillisecond, kMovingPause);
+  if (moving_.in_vain()) moving_backoff_.fail(first + length_, kMovingPause);
   return done;
 }
 
@@ -95,7 +95,7 @@ void ManyTicks::compare_tick(Time now) {
     commands_ = positioning_commands();
     steady_backoff_.succeed();
   } else {
-    steady_backoff_.fail(now + kMillisecond, kSteadyPause);
+    steady_backoff_.fail(now + length_, kSteadyPause);
   }
 }
 
@@ -203,7 +203,7 @@ Ticks ManyTicks::advance(Time first, Ticks most) {
   }
   left_ -= most;
   pending_ += most;
-  last_ = first + static_cast<Time>(most - 1) * kMillisecond;
+  last_ = first + static_cast<Time>(most - 1) * length_;
   return most;
 }
 

@@ -28,7 +28,7 @@ class ManyTicks final {
   // How late ticks may be, so that who watches the run sees it move on.
   static constexpr Ticks kLatest = 31;
 
-  explicit ManyTicks(Unit& unit) : unit_(unit) {}
+  explicit ManyTicks(Unit& unit) : unit_(unit), length_(unit.milliseconds().length()) {}
 
   // As Timed (runtime/pace/timed.hpp) has them.
   bool tick(Time now);
@@ -101,6 +101,7 @@ class ManyTicks final {
   }
 
   Unit& unit_;
+  Time length_;  // of a millisecond of the unit
   MovingTicks moving_{unit_};
   Mode mode_ = Mode::InFull;
   Ticks left_ = 0;         // ticks that are done in this way

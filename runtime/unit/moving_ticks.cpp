@@ -44,7 +44,7 @@ Ticks MovingTicks::move(Time first, Ticks most) {
   begun_ = done != most;
   in_vain_ = begun_ && done == 0;
   // The one that has begun shows itself, and the tasks go back to what was shown before.
-  const Time last = first + (static_cast<Time>(done) - 1) * kMillisecond;
+  const Time last = first + (static_cast<Time>(done) - 1) * length_;
   if (done != 0) unit_.count_moved(last, done);
   if (!begun_) unit_.show_moved(last);
   return done;

@@ -13,7 +13,7 @@ namespace ipos::runtime {
 
 class MovingTicks final {
  public:
-  explicit MovingTicks(Unit& unit) : unit_(unit) {}
+  explicit MovingTicks(Unit& unit) : unit_(unit), length_(unit.milliseconds().length()) {}
 
   // After a tick, of an axis that moves: the next ones may be such ticks, as far as that can be said before. What is asked here stays so until
   // somebody touches the unit.
@@ -33,6 +33,7 @@ class MovingTicks final {
   void take_back(Ticks done, const vm::Machine::BeforeAhead& before, const ProgramReach& reach);
 
   Unit& unit_;
+  Time length_;  // of a millisecond of the unit
   bool begun_ = false;
   bool in_vain_ = false;
 };

@@ -20,6 +20,7 @@ Unit::Unit(const EventQueue& clock, UnitConfig config, std::optional<vm::Image> 
     : rates_(rates),
       drive_(config.type, config.machine, config.options),
       clock_(clock),
+      milliseconds_(config.options.clock_ppm),
       config_(std::move(config)),
       journal_(journal),
       execution_(execution),

@@ -111,6 +111,8 @@ class Unit final {
   bool store_memory(Time now);
 
   // --- its parts ---
+  OwnMilliseconds& milliseconds() { return milliseconds_; }
+  const OwnMilliseconds& milliseconds() const { return milliseconds_; }
   const std::string& name() const { return config_.name; }
   const vm::Image* image() const { return image_ ? &*image_ : nullptr; }
   // It was started at least once; null: never.
@@ -185,6 +187,7 @@ class Unit final {
   std::optional<SynchronousService> synchronous_;  // of one with a master encoder at its DRS card
 
   const EventQueue& clock_;
+  OwnMilliseconds milliseconds_;
   UnitConfig config_;
   Journal& journal_;
   Execution execution_;

@@ -175,6 +175,8 @@ bool UnitInterface::has_po_word(std::initializer_list<PoAssignment> wanted) cons
 // Some time after the telegram that is answered.
 ProcessWords UnitInterface::input(Time /*now*/) { return state_.pi(); }
 
+bool UnitInterface::follows_sync() const { return state().settings().external_synchronization == 1; }
+
 void UnitInterface::synchronize(Time /*now*/) { ++syncs_; }
 
 SerialParameters UnitInterface::serial_parameters() const {

@@ -91,6 +91,7 @@ class UnitInterface final : public ParameterServer, public ProcessDataServer, pu
   bool is_slave() const;             // of master/slave operation, over SBus or RS-485
   ProcessWords input(Time now) override;
   void synchronize(Time now) override;
+  bool follows_sync() const;  // P887
   uint32_t syncs() const { return syncs_; }  // sync telegrams so far
 
   // Some of P870..P872 says so.

@@ -25,7 +25,7 @@ void Unit::power_on() {
   if (!has_variables()) return;
   begin_variables();
   if (!config_.type.has(stdlib::Trait::Positioning)) return;
-  positioning_.emplace(drive(), drive_.parameters(), journal_, config_.name,
+  positioning_.emplace(milliseconds_, drive(), drive_.parameters(), journal_, config_.name,
                        [this](uint32_t address) { return source_place(address); });
   positioning_commands_.emplace(*positioning_);
   if (config_.options.master_encoder) synchronous_.emplace(drive(), drive_.parameters(), journal_, config_.name);
@@ -49,6 +49,7 @@ void Unit::power_off() {
 
 ProgramServices Unit::services() {
   return {clock_,
+          milliseconds_,
           drive(),
           drive_.parameters(),
           timers_,

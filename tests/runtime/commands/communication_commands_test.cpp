@@ -18,6 +18,7 @@ struct BusRig : ProgramRig {
         first(unit, 500'000, outbox, 100, 1),
         second(unit, 500'000, outbox, 200, 2),
         with_buses{clock,
+                   milliseconds,
                    drive,
                    parameters,
                    timers,

@@ -19,7 +19,7 @@ constexpr uint16_t kCam = 1 << 2;               // DI02, where P601 says so
 struct AxisRig : ProgramRig {
   explicit AxisRig(const std::string& text, std::initializer_list<std::pair<const char*, int32_t>> more = {})
       : ProgramRig(text),
-        service(drive, parameters, journal, "unit1", [](uint32_t) { return std::string(); }),
+        service(milliseconds, drive, parameters, journal, "unit1", [](uint32_t) { return std::string(); }),
         positioning(service),
         positioning_services(services(server.memory())),
         axis_commands(with_positioning(), journal, "unit1", &image),

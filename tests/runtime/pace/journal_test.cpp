@@ -82,7 +82,7 @@ struct Journal final : runtime::Timed, runtime::TelegramReader {
 };
 
 struct Desk {
-  explicit Desk(Pace pace = Pace::Lazy) : pacer(queue, kPlace, timed, pace) {}
+  explicit Desk(Pace pace = Pace::Lazy) : pacer(queue, kPlace, timed, pace, milliseconds) {}
   // The journal up to that millisecond, and a bit further, so that no tick is at this moment.
   std::string until(Time ms) {
     queue.run_until(ms * kMillisecond + kMillisecond / 2);
@@ -93,6 +93,7 @@ struct Desk {
 
   EventQueue queue;
   Journal timed{queue};
+  runtime::OwnMilliseconds milliseconds;
   Pacer pacer;
 };
 

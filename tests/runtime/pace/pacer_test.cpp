@@ -65,7 +65,7 @@ struct Toy final : runtime::Timed, runtime::TelegramReader {
 };
 
 struct Rig {
-  explicit Rig(Pace pace, Time start = 0) : pacer(queue, kSource, toy, pace) {
+  explicit Rig(Pace pace, Time start = 0) : pacer(queue, kSource, toy, pace, milliseconds) {
     queue.run_until(start);
     pacer.start();
   }
@@ -86,6 +86,7 @@ struct Rig {
 
   runtime::EventQueue queue;
   Toy toy;
+  runtime::OwnMilliseconds milliseconds;
   runtime::Pacer pacer;
 };
 
@@ -208,7 +209,8 @@ TEST(Pacer, ATickThatStopsIsResumed) {
     int ticks = 0, sends = 0;
   } stopping;
   runtime::EventQueue queue;
-  runtime::Pacer pacer(queue, kSource, stopping, Pace::InTurn);
+  runtime::OwnMilliseconds milliseconds;
+  runtime::Pacer pacer(queue, kSource, stopping, Pace::InTurn, milliseconds);
   pacer.start();
   queue.run_until(10 * kMillisecond);
   EXPECT_EQ(stopping.ticks, 3);
@@ -245,7 +247,8 @@ TEST(Pacer, WhoHasStoppedMayBecomeLazy) {
     int ticks = 0;
   } once;
   runtime::EventQueue queue;
-  runtime::Pacer pacer(queue, kSource, once, Pace::InTurn);
+  runtime::OwnMilliseconds milliseconds;
+  runtime::Pacer pacer(queue, kSource, once, Pace::InTurn, milliseconds);
   pacer.start();
   queue.run_until(2 * kMillisecond);
   EXPECT_EQ(once.ticks, 3);

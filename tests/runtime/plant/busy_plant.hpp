@@ -10,6 +10,7 @@
 #include <string>
 
 #include "tests/runtime/plant/loop_body.hpp"
+#include "tests/runtime/plant/quartz.hpp"
 
 namespace ipos::tests {
 
@@ -51,7 +52,7 @@ inline constexpr const char* kBusyBodies[] = {
 
 class BusyPlant {
  public:
-  explicit BusyPlant(uint64_t seed) : random_(seed) {
+  explicit BusyPlant(uint64_t seed) : seed_(seed), random_(seed) {
     stations_ = pick(2, 5);
     static constexpr int kBauds[] = {125'000, 500'000, 1'000'000};
     text_ = fmt::format(
@@ -121,7 +122,7 @@ class BusyPlant {
     text_ += fmt::format(
         "[[station]]\nname = \"u{0}\"\nunit = \"{1}\"\nprogram = \"P{0}.IPC\"\nsbus = \"can\"\n{2}"
         "[station.parameters]\n{3} = {4}\n{5} = {6}\nP810 = {4}\nP130 = 200\nP160 = {7}\nP620 = 21\n",
-        n, b ? "mdxb" : "md60a", serial_ && (asks || pick(0, 1) == 0) ? "rs485 = \"line\"\n" : "",
+        n, b ? "mdxb" : "md60a", (serial_ && (asks || pick(0, 1) == 0) ? "rs485 = \"line\"\n" : "") + quartz(seed_, n),
         b ? "P881" : "P813", n + 1, b ? "P884" : "P816", baud_ == 0 ? 0 : baud_ + 1, pick(-5, 5) * 200'200);
     if (pick(0, 1) == 0) text_ += "P841 = 1\n";
     if (pick(0, 3) == 0) text_ += "P700 = 13\n";
@@ -156,6 +157,7 @@ class BusyPlant {
     sources_[fmt::format("P{}.IPC", n)] = source;
   }
 
+  uint64_t seed_;
   std::mt19937_64 random_;
   int stations_ = 0;
   int baud_ = 0;

@@ -114,6 +114,8 @@ TEST(PlantFileMistakes, OfAStation) {
                              {"firmware = ^9\n", "firmware is a version of two digits, 10..99"},
                              {"firmware = ^100\n", "10..99"},
                              {"start_up = ^'60001ms'\n", "start_up is at most 60s"},
+                             {"clock_ppm = ^10001\n", "clock_ppm is -10000..10000"},
+                             {"clock_ppm = ^'100'\n", "clock_ppm must be"},
                              {"logodrive = ^true\n", "logodrive is of mc07; unit mdxb has no such variants"},
                              {"sbus = ^'a'\n", "there is no bus 'a'"},
                              {"sbus2 = ^'a'\n", "there is no bus 'a'"},

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "tests/runtime/plant/loop_body.hpp"
+#include "tests/runtime/plant/quartz.hpp"
 
 namespace ipos::tests {
 
@@ -59,7 +60,7 @@ inline constexpr const char* kBesides[] = {
 
 class TravellingPlant {
  public:
-  explicit TravellingPlant(uint64_t seed) : random_(seed) {
+  explicit TravellingPlant(uint64_t seed) : seed_(seed), random_(seed) {
     stations_ = pick(1, 3);
     slow_ = pick(0, 2) == 0;  // frames wait for the line
     text_ = fmt::format("seed = {}\n[[bus]]\nname = \"can\"\nkind = \"can\"\nbaud = {}\n", pick(0, 9), slow_ ? 125'000 : 500'000);
@@ -86,6 +87,7 @@ class TravellingPlant {
   void station(int n, bool led) {
     const bool b = pick(0, 4) != 0, has_program = pick(0, 9) != 0, positions = has_program && !led && pick(0, 3) != 0;
     text_ += fmt::format("[[station]]\nname = \"u{0}\"\nunit = \"{1}\"\nsbus = \"can\"\n", n, b ? "mdxb" : "md60a");
+    text_ += quartz(seed_, n);
     if (has_program) text_ += fmt::format("program = \"P{}.IPC\"\n", n);
     if (pick(0, 3) == 0) text_ += "control = \"real\"\n";
     if (pick(0, 7) == 0) text_ += "noise = \"0.3 %\"\n";
@@ -202,6 +204,7 @@ class TravellingPlant {
     }
   }
 
+  uint64_t seed_;
   std::mt19937_64 random_;
   int stations_ = 0;
   bool slow_ = false;

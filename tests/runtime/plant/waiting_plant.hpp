@@ -10,6 +10,7 @@
 #include <string>
 
 #include "tests/runtime/plant/loop_body.hpp"
+#include "tests/runtime/plant/quartz.hpp"
 
 namespace ipos::tests {
 
@@ -68,7 +69,7 @@ inline constexpr const char* kWaitingBodies[] = {
 
 class WaitingPlant {
  public:
-  explicit WaitingPlant(uint64_t seed) : random_(seed), card_(seed % 4 == 1), gateway_(seed % 4 == 2) {
+  explicit WaitingPlant(uint64_t seed) : seed_(seed), random_(seed), card_(seed % 4 == 1), gateway_(seed % 4 == 2) {
     stations_ = pick(1, 4);
     serial_ = pick(0, 1) != 0;
     text_ =
@@ -107,6 +108,7 @@ class WaitingPlant {
     text_ += fmt::format("[[station]]\nname = \"u{0}\"\nunit = \"{1}\"\n{2}sbus = \"can\"\n{3}", n, unit,
                          has_program ? fmt::format("program = \"P{}.IPC\"\n", n) : "",
                          serial_ && (!m07 || pick(0, 1) == 0) ? "rs485 = \"line\"\n" : "");
+    text_ += quartz(seed_, n);
     if (card_ && n == 0 && !m07) text_ += "option = \"dfp\"\nprofibus = \"dp\"\nprofibus_address = 9\n";
     text_ += fmt::format("[station.parameters]\nP{0} = {1}\nP810 = {1}\nP130 = 200\nP136 = 100\n",
                          b ? 881 : 813, n + 1);
@@ -176,6 +178,7 @@ class WaitingPlant {
                          pick(0, 3'000'000), kWhat[pick(0, static_cast<int>(std::size(kWhat)) - 1)]);
   }
 
+  uint64_t seed_;
   std::mt19937_64 random_;
   bool card_, gateway_;  // on a PROFIBUS
   int stations_ = 0;

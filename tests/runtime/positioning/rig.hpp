@@ -27,7 +27,7 @@ struct Rig {
   explicit Rig(Settings settings = {}, const char* unit = "md60a")
       : parameters(*stdlib::find_unit(unit)),
         drive(parameters),
-        service(drive, parameters, journal, "rig", [](uint32_t) { return std::string(); }) {
+        service(milliseconds, drive, parameters, journal, "rig", [](uint32_t) { return std::string(); }) {
     set("700", 13);
     set("323", 0);
     for (const auto& [number, value] : settings) set(number, value);
@@ -99,6 +99,7 @@ struct Rig {
   runtime::ParameterStore parameters;
   runtime::Drive drive;
   runtime::Journal journal;
+  runtime::OwnMilliseconds milliseconds;
   runtime::PositioningService service;
   std::array<int32_t, 512> h{};
   // Levels of the inputs at a mechanical position; without it they stay as set.

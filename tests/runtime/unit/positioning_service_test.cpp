@@ -198,7 +198,8 @@ TEST(PositioningReports, NameThePlaceOfTheCommand) {
     runtime::ParameterStore parameters(*stdlib::find_unit("md60a"));
     runtime::Drive drive(parameters);
     runtime::Journal journal;
-    runtime::PositioningService service(drive, parameters, journal, "u",
+    const runtime::OwnMilliseconds milliseconds;
+    runtime::PositioningService service(milliseconds, drive, parameters, journal, "u",
                                         [](uint32_t address) { return "P.IPC:" + std::to_string(address); });
     std::array<int32_t, 512> h{};
     // Of a mode without positioning: F77 has no response, but is told.

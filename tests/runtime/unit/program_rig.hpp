@@ -36,7 +36,7 @@ class ProgramRig {
   ProgramRig& operator=(const ProgramRig&) = delete;
 
   runtime::ProgramServices services(runtime::RetainedMemory& memory) {
-    return {clock, drive, parameters, timers, memory, movilink, {}};
+    return {clock, milliseconds, drive, parameters, timers, memory, movilink, {}};
   }
 
   int32_t& h(size_t n) { return machine.variables()[n]; }
@@ -71,6 +71,7 @@ class ProgramRig {
 
   const stdlib::UnitType& unit;
   runtime::EventQueue clock;
+  runtime::OwnMilliseconds milliseconds;
   runtime::Journal journal;
   runtime::UnitInterface server;
   runtime::ParameterStore& parameters = server.parameters();
