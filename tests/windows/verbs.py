@@ -147,6 +147,14 @@ def steady(text: bytes) -> bytes:
     return re.sub(rb"^ipos: (warning: )?real time: .*\n", b"", text, flags=re.M)
 
 
+def wine_starts(environment: dict[str, str]) -> bool:
+    """Starts wine's own services and lets them stay. Each has the standard error of the program that started it: where they came and
+    went with a verb, a page fault of wine's ntoskrnl.exe as it ended stood among the verb's messages."""
+    subprocess.run(["wineserver", "-p"], env=environment)
+    first = subprocess.run([str(HERE / "ipos.sh"), "--version"], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    return first.returncode == 0
+
+
 def main() -> int:
     if why := missing():
         print(f"skipped: {why}")
@@ -158,7 +166,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         linux = System([str(LINUX)], environment, Path(folder) / "linux")
         windows = System([str(HERE / "ipos.sh")], environment, Path(folder) / "windows")
-        if subprocess.run([str(HERE / "ipos.sh"), "--version"], env=environment, capture_output=True).returncode != 0:
+        if not wine_starts(environment):
             print("skipped: wine does not start")
             return 77
         listed = re.findall(r"^  ([a-z]+) {2,}", linux.run(["--help"])[1].decode(), re.M)
@@ -189,6 +197,7 @@ def main() -> int:
                         print(f"    {len(a)} and {len(b)} bytes; windows ends with {b[-200:]!r}")
                 wrong += 1
             print(f"{verb or '(none)':<12}{len(lines):>9}{same:>13}", flush=True)
+    subprocess.run(["wineserver", "-k"], env=environment)
     return 1 if wrong else 0
 
 
