@@ -197,7 +197,8 @@ def main() -> int:
                         print(f"    {len(a)} and {len(b)} bytes; windows ends with {b[-200:]!r}")
                 wrong += 1
             print(f"{verb or '(none)':<12}{len(lines):>9}{same:>13}", flush=True)
-    subprocess.run(["wineserver", "-k"], env=environment)
+    for way in ("-k", "-w"):  # ends them, and waits until they are gone
+        subprocess.run(["wineserver", way], env=environment)
     return 1 if wrong else 0
 
 
