@@ -50,7 +50,7 @@ bool FunctionGenerator::copy_loop(const checked::For& node) {
   const auto move = move_of(node.step);
   const checked::Expr* expr = only_expression(*node.body);
   if (!begin || !move || expr == nullptr || (move->by != 1 && move->by != UINT32_MAX)) return false;
-  const auto [counter, from] = *begin;
+  const auto counter = begin->first, from = begin->second;
   const bool up = move->by == 1;
   const auto to = end_of(node.condition, counter, up);
   if (!to || move->variable != counter || !is_own(counter)) return false;
