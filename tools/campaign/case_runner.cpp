@@ -155,12 +155,11 @@ void CaseRunner::judge_measures(Outcome& outcome) const {
 }
 
 Outcome CaseRunner::run(const Levels& levels) {
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point begin = Clock::now();
+  const auto begin = std::chrono::steady_clock::now();
   Outcome outcome;
   campaign_.tests.empty() ? run_plant(levels, outcome) : run_tests(levels, outcome);
   judge_measures(outcome);
-  outcome.ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+  outcome.ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   return outcome;
 }
 

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <ranges>
 
 #include "runtime/plant_file/read_toml.hpp"
 
@@ -69,9 +68,9 @@ void TomlEdit::insert_line(uint32_t after, std::string_view line) {
 }
 
 uint32_t TomlEdit::original_line(uint32_t line) const {
-  for (const uint32_t added : std::views::reverse(added_)) {
-    if (line == added) return 0;
-    if (line > added) --line;
+  for (auto added = added_.rbegin(); added != added_.rend(); ++added) {
+    if (line == *added) return 0;
+    if (line > *added) --line;
   }
   return line;
 }

@@ -112,10 +112,10 @@ Json DapServer::disassemble(const Json& arguments) {
   if (!place) throw ValueError("there is no program at this reference");
   const CodeMap& code = *debugger_->code(place->station);
   const auto items = static_cast<int64_t>(code.items().size());
-  const int64_t words = debugger_->plant().stations()[place->station]->image()->code.size();
+  const auto words = static_cast<int64_t>(debugger_->plant().stations()[place->station]->image()->code.size());
   const int64_t here = place->address < 0        ? place->address
                        : place->address >= words ? items + place->address - words
-                                                 : code.item_at(static_cast<uint32_t>(place->address));
+                                                 : static_cast<int64_t>(code.item_at(static_cast<uint32_t>(place->address)));
   const auto count = std::clamp<int64_t>(arguments.at("instructionCount").get<int64_t>(), 0, kMostShown);
   const int64_t first =
       std::clamp(here + std::clamp(arguments.value("instructionOffset", int64_t{0}), -kMostShown, kMostShown),
