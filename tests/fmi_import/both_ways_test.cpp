@@ -39,6 +39,9 @@ class Stepped {
 
 // Like the plant the master lets the spring go through a millisecond first, then the drive has the new speed.
 TEST(FmuBothWays, ImportAndExportGiveTheSameCurves) {
+#ifdef IPOS_SANITIZED
+  GTEST_SKIP() << "an FMU with a sanitizer in it does not load into the plain process that runs foreign FMUs";
+#endif
   const FmuFolder folder;
   for (const int version : {2, 3}) {
     folder.write("p.toml", fmt::format(kDriven, fmt::format("spring{}.fmu", version)));
