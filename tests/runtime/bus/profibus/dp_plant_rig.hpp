@@ -10,11 +10,30 @@
 #include <string_view>
 
 #include "runtime/plant/plant.hpp"
+#include "runtime/signals/find.hpp"
 #include "tests/harness/proves.hpp"
 #include "tests/harness/reach.hpp"
 #include "tests/runtime/bus/profibus/octets.hpp"
 
 namespace ipos::tests {
+
+// --- parts of a plant file
+
+inline std::string dp_line(uint32_t baud = 500'000) {
+  return "[[bus]]\nname = \"dp\"\nkind = \"profibus\"\nbaud = " + std::to_string(baud) + "\n";
+}
+// Controlled by the bus, and enabled at its terminal 41.
+inline std::string mc31_station(const std::string& parameters = "", const std::string& keys = "",
+                                const std::string& name = "inv", int address = 8, const std::string& option = "ffp31") {
+  return "[[station]]\nname = \"" + name + "\"\nunit = \"mc31\"\noption = \"" + option +
+         "\"\nprofibus = \"dp\"\nprofibus_address = " + std::to_string(address) + "\n" + keys +
+         "[station.parameters]\nP841 = 1\nP600 = 0\nP601 = 0\n" + parameters + "[station.inputs]\nDI00 = 1\n";
+}
+inline std::string dp_master(const std::string& slave, const std::string& more = "", const std::string& name = "plc",
+                             int address = 1) {
+  return "[[control]]\nname = \"" + name + "\"\nprofibus = \"dp\"\naddress = " + std::to_string(address) +
+         "\n[[control.slave]]\naddress = 8\ncfg = \"F2\"\n" + slave + more;
+}
 
 struct DpPlant {
   explicit DpPlant(const std::string& text, runtime::Pace pace = runtime::Execution{}.pace) {
@@ -60,6 +79,11 @@ struct DpPlant {
       if (n > 5 && (master().slave(0).inputs()[0] & 0x40) == handshake) break;
     }
     return channel();
+  }
+  // A signal as `ipos run --watch` shows it.
+  std::string shown(const std::string& name) {
+    const auto found = signals::find_signals(*plant, name);
+    return found && found->size() == 1 ? found->front().words(found->front().read()) : "no signal " + name;
   }
   bool told(std::string_view text) {
     const auto entries = plant->journal().entries();

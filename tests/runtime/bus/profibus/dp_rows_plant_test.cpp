@@ -1,7 +1,6 @@
 // Rows of the DP part as a plant shows them: what the master notes of its slaves, diagnosis of warnings, wiring and cable, octets of
 // a foreign master of FMS, switches. Expected values: MOVITRAC 31 PROFIBUS, MOVIDRIVE serial and MDX60B/61B manuals.
 #include "runtime/bus/profibus/frame_text.hpp"
-#include "runtime/signals/find.hpp"
 #include "runtime/station/dp_slaves.hpp"
 #include "tests/runtime/bus/profibus/dp_plant_rig.hpp"
 
@@ -12,21 +11,12 @@ using runtime::kMillisecond;
 using runtime::kSecond;
 namespace diag = profibus::diag;
 
-const std::string kLine = "[[bus]]\nname = \"dp\"\nkind = \"profibus\"\nbaud = 500000\n";
-std::string station(const std::string& parameters = "", const std::string& keys = "", const std::string& name = "inv", int address = 8) {
-  return "[[station]]\nname = \"" + name + "\"\nunit = \"mc31\"\noption = \"ffp31\"\nprofibus = \"dp\"\nprofibus_address = " +
-         std::to_string(address) + "\n" + keys + "[station.parameters]\nP841 = 1\nP600 = 0\nP601 = 0\n" + parameters +
-         "[station.inputs]\nDI00 = 1\n";
-}
-std::string master(const std::string& slave, const std::string& more = "", const std::string& name = "plc", int address = 1) {
-  return "[[control]]\nname = \"" + name + "\"\nprofibus = \"dp\"\naddress = " + std::to_string(address) +
-         "\n[[control.slave]]\naddress = 8\ncfg = \"F2\"\n" + slave + more;
-}
+const std::string kLine = dp_line();
 
 // What the master keeps of a slave has bits of its own; the slave never sends them.
 TEST(DpRows, OwnBitsOfTheMaster) {
   PROVES("DP-DIAG-05", "DP-DIAG-07", "DP-DIAG-12");
-  DpPlant two(kLine + station() + master("watchdog = \"1s\"\n") + master("", "", "other", 2));
+  DpPlant two(kLine + mc31_station() + dp_master("watchdog = \"1s\"\n") + dp_master("", "", "other", 2));
   two.run(3 * kSecond);
   const auto controls = two.plant->all<runtime::ProfibusControl>();
   const profibus::Diagnosis& foreign = *controls[1]->view(8);
@@ -36,11 +26,11 @@ TEST(DpRows, OwnBitsOfTheMaster) {
   auto& slave = two.station().profibus()->card().station().slave();
   for (const auto bit : {diag::kMasterLock, diag::kInvalidResponse, diag::kNonExistent})
     EXPECT_FALSE(slave.diagnosis(two.plant->now()).has(bit));
-  DpPlant corrupt(kLine + station() + master("") + "[[fault]]\nbus = \"dp\"\nkind = \"parity\"\nstation = \"inv\"\nfrom = \"2s\"\nuntil = \"3s\"\n");
+  DpPlant corrupt(kLine + mc31_station() + dp_master("") + "[[fault]]\nbus = \"dp\"\nkind = \"parity\"\nstation = \"inv\"\nfrom = \"2s\"\nuntil = \"3s\"\n");
   corrupt.run(2 * kSecond + 500 * kMillisecond);
   EXPECT_TRUE(corrupt.master().slave(0).view().has(diag::kInvalidResponse));
   EXPECT_FALSE(corrupt.station().profibus()->card().station().slave().diagnosis(corrupt.plant->now()).has(diag::kInvalidResponse));
-  DpPlant unplugged(kLine + station() + master(""));
+  DpPlant unplugged(kLine + mc31_station() + dp_master(""));
   unplugged.run(2 * kSecond);
   const auto before = unplugged.master().slave(0).view();
   unplugged.plant->set_power("inv", false);
@@ -55,8 +45,8 @@ TEST(DpRows, OwnBitsOfTheMaster) {
 // A slave that its master takes out of the cycle: bit 7 of octet 2 in the master's view alone.
 TEST(DpRows, ASlaveOutOfTheCycle) {
   PROVES("DP-DIAG-13");
-  DpPlant bench(kLine + station() +
-                master("watchdog = \"300ms\"\n", "[[control.command]]\nat = \"2s\"\ncommand = \"deactivate\"\naddress = 8\n"
+  DpPlant bench(kLine + mc31_station() +
+                dp_master("watchdog = \"300ms\"\n", "[[control.command]]\nat = \"2s\"\ncommand = \"deactivate\"\naddress = 8\n"
                                                 "[[control.command]]\nat = \"3s\"\ncommand = \"activate\"\naddress = 8\n"));
   bench.run(2 * kSecond - kMillisecond);
   EXPECT_TRUE(bench.master().slave(0).exchanging());
@@ -81,8 +71,8 @@ TEST(DpRows, ASlaveOutOfTheCycle) {
 TEST(DpRows, DiagnosisOfAWarning) {
   PROVES("DP-DIAG-01");
   for (const auto& [response, is_error] : {std::pair("4", true), {"7", false}}) {
-    DpPlant bench(kLine + station(std::string("P572 = ") + response + "\n") +
-                  master("watchdog = \"200ms\"\npo = [6, 1500]\n",
+    DpPlant bench(kLine + mc31_station(std::string("P572 = ") + response + "\n") +
+                  dp_master("watchdog = \"200ms\"\npo = [6, 1500]\n",
                          "[[control.command]]\nat = \"2s\"\ncommand = \"stop\"\n[[control.command]]\nat = \"2600ms\"\ncommand = \"start\"\n"));
     bench.run(2 * kSecond);
     EXPECT_EQ(encode(bench.master().slave(0).view()).size(), 6U);
@@ -105,7 +95,7 @@ TEST(DpRows, CableOfTypeA) {
   PROVES("DP-ID-10");
   const auto told = [](const std::string& keys) {
     std::string line = kLine;
-    DpPlant bench(line + keys + station("", "profibus_terminator = true\n") + master(""));
+    DpPlant bench(line + keys + mc31_station("", "profibus_terminator = true\n") + dp_master(""));
     bench.run(10 * kMillisecond);
     std::string all;
     for (const auto& entry : bench.plant->journal().entries()) all += entry.text + "\n";
@@ -129,7 +119,7 @@ TEST(DpRows, ALineThatDisturbs) {
   const auto on = [](const std::string& keys, bool terminated) {
     std::string line = kLine;
     auto bench = std::make_unique<DpPlant>(
-        line + keys + station("", "profibus_terminator = " + std::string(terminated ? "true" : "false") + "\n") + master(""));
+        line + keys + mc31_station("", "profibus_terminator = " + std::string(terminated ? "true" : "false") + "\n") + dp_master(""));
     bench->run(2 * kSecond);
     return bench;
   };
@@ -155,7 +145,7 @@ TEST(DpRows, ALineThatDisturbs) {
   EXPECT_LT(half->master().slave(0).exchanges(), exchanges / 2);
   // The plant's seed chooses which ones, and nothing else does.
   const auto of_seed = [&](const std::string& seed) {
-    auto bench = std::make_unique<DpPlant>(seed + kLine + station("", "profibus_terminator = false\n") + master(""));
+    auto bench = std::make_unique<DpPlant>(seed + kLine + mc31_station("", "profibus_terminator = false\n") + dp_master(""));
     bench->run(2 * kSecond);
     return std::pair(bench->master().repetitions(), bench->master().slave(0).exchanges());
   };
@@ -167,7 +157,7 @@ TEST(DpRows, ALineThatDisturbs) {
 
 // A station that is set to another rate for a while: no communication with it, and it comes back.
 TEST(DpRows, AnotherRateForAWhile) {
-  DpPlant bench(kLine + station() + master("watchdog = \"200ms\"\n") +
+  DpPlant bench(kLine + mc31_station() + dp_master("watchdog = \"200ms\"\n") +
                 "[[fault]]\nbus = \"dp\"\nkind = \"baud\"\nstation = \"inv\"\nfrom = \"1s\"\nuntil = \"2s\"\n");
   bench.run(kSecond - kMillisecond);
   EXPECT_FALSE(bench.master().slave(0).view().has(diag::kNonExistent));
@@ -192,7 +182,7 @@ std::string sd2(int control, const std::string& data) {
 
 TEST(DpRows, ASecondRequestBeforeTheAnswer) {
   PROVES("FMS-CRL-12");
-  DpPlant bench(kLine + station());
+  DpPlant bench(kLine + mc31_station());
   Heard heard;
   runtime::Bus& bus = *bench.plant->find_bus("dp");
   bus.add_observer(heard);
@@ -218,19 +208,16 @@ TEST(DpRows, ASecondRequestBeforeTheAnswer) {
 
 TEST(DpRows, RatesOfTheLamps) {
   PROVES("DP-LED-09");
-  const auto shown = [](DpPlant& bench, const std::string& name) {
-    const auto found = signals::find_signals(*bench.plant, "inv." + name);
-    return found && found->size() == 1 ? found->front().words(found->front().read()) : "none";
-  };
-  DpPlant young(kLine + station());
+  const auto shown = [](DpPlant& bench, const std::string& name) { return bench.shown("inv." + name); };
+  DpPlant young(kLine + mc31_station());
   young.run(100 * kMillisecond);
   EXPECT_EQ(shown(young, "RUN_rate"), "3.0 Hz");
   EXPECT_EQ(shown(young, "BUS_FAULT_rate"), "0.0 Hz");
-  DpPlant strange(kLine + station("", "", "inv", 126));
+  DpPlant strange(kLine + mc31_station("", "", "inv", 126));
   strange.run(2 * kSecond);
   EXPECT_EQ(shown(strange, "BUS_FAULT_rate"), "0.5 Hz");
   EXPECT_EQ(shown(strange, "RUN"), "1");
-  DpPlant broken(kLine + station() + "[[fault]]\nbus = \"dp\"\nkind = \"card_flash\"\nstation = \"inv\"\nfrom = \"1s\"\n");
+  DpPlant broken(kLine + mc31_station() + "[[fault]]\nbus = \"dp\"\nkind = \"card_flash\"\nstation = \"inv\"\nfrom = \"1s\"\n");
   broken.run(2 * kSecond);
   EXPECT_EQ(shown(broken, "RUN_rate"), "1.0 Hz");
   EXPECT_EQ(shown(broken, "fms_switch"), "0");
@@ -239,14 +226,14 @@ TEST(DpRows, RatesOfTheLamps) {
 // Status word 1, bit 2, says that the fieldbus controls; terminal 41 stops the drive all the same.
 TEST(DpRows, FieldbusModeAndTerminals) {
   PROVES("DP-SW-01", "DP-STOP-01");
-  DpPlant bench(kLine + station() + master("po = [6, 1500]\n") +
+  DpPlant bench(kLine + mc31_station() + dp_master("po = [6, 1500]\n") +
                 "[[stimulus]]\nstation = \"inv\"\nat = \"6s\"\ninput = \"DI00\"\nset = 0\n");
   bench.run(5999 * kMillisecond);
   EXPECT_EQ(bench.speed(), 300'000);
   EXPECT_EQ(bench.input(0), 0x0407);
   bench.run(12 * kSecond);
   EXPECT_EQ(bench.speed(), 0);
-  DpPlant standard(kLine + "[[station]]\nname = \"inv\"\nunit = \"mc31\"\noption = \"ffp31\"\nprofibus = \"dp\"\nprofibus_address = 8\n" + master("po = [6, 1500]\n"));
+  DpPlant standard(kLine + "[[station]]\nname = \"inv\"\nunit = \"mc31\"\noption = \"ffp31\"\nprofibus = \"dp\"\nprofibus_address = 8\n" + dp_master("po = [6, 1500]\n"));
   standard.run(2 * kSecond);
   EXPECT_EQ(standard.input(0) & 4, 0) << "P841 is STANDARD";
 }
