@@ -95,6 +95,7 @@ struct DpPlant {
 
 // The errors of a plant file that is refused, "line: text" each.
 inline std::string errors_of(const std::string& text) {
+  goes_through(kPlantFile);
   std::string found;
   for (const auto& error : runtime::read_plant_file(text).errors)
     found += std::to_string(error.place.line) + ": " + error.text + "\n";

@@ -4,6 +4,7 @@
 
 #include "runtime/plant_file/serial_plan.hpp"
 #include "tests/runtime/bus/rs485/serial_plant_rig.hpp"
+#include "tests/runtime/plant/plant_rig.hpp"
 
 namespace ipos::tests {
 namespace {
@@ -172,6 +173,44 @@ TEST(DisturbedLine, WhichTelegramsAreStruck) {
   }
   PlantRun nowhere(bus("l") + kUnit + station("c", "mdxb", "") + fault("swap", "station = \"c\"\n"));
   EXPECT_TRUE(nowhere.told("the fault planted on bus 'l' has no effect: the station is not on it"));
+}
+
+// Each kind once, and each is counted once: an octet of the example, a pause within it, a fault of the line. The setpoint of a master
+// that falls silent is missed after 500 ms.
+TEST(DisturbedLine, EightCounters) {
+  PROVES("MDB-RS485-31");
+  PlantRun run(bus("l") + station("a", "mdxb", "rs485 = \"l\"\n", "P810 = 1\nP811 = 101\nP100 = 9\n") + fault("parity", "frame = 1\n") +
+               fault("baud", "station = \"a\"\nfrom = \"1s\"\nuntil = \"1.5s\"\n"));
+  const std::string example = "02 01 05 00 06 3A 98 01 F4";
+  EXPECT_TRUE(run.ask(0, example).empty());  // its parity bit
+  run.plant->run_until(1100 * kMillisecond);
+  EXPECT_TRUE(run.ask(0, example).empty());  // no stop bit at the other rate
+  run.plant->run_until(2 * kSecond);
+  const Bytes bytes = telegram(example);
+  run.hands[0]->send({bytes.begin(), bytes.begin() + 5});
+  run.run(wire_time(5, 9600) + 5 * kMillisecond);
+  run.hands[0]->send({bytes.begin() + 5, bytes.end()});
+  run.run(100 * kMillisecond);
+  EXPECT_TRUE(run.ask(0, "02 02 05 00 06 3A 98 01 F4").empty());
+  EXPECT_TRUE(run.ask(0, "02 01 07 00 06 3A 98 01 F4").empty());
+  Bytes wrong = bytes;
+  wrong.back() ^= 3;
+  run.hands[0]->send(wrong);
+  run.run(100 * kMillisecond);
+  EXPECT_TRUE(run.ask(0, "02 65 05 00 06 07 D0 00 00").empty());
+  run.run(kSecond);
+  EXPECT_EQ(errors_of(run),
+            "parity error 1, character frame error 1, character delay exceeded 1, address incorrect 1, PDU type incorrect 1, BCC "
+            "incorrect 1, RS-485 timeout 1");
+  // The eighth is of a master: nobody answers its MOVLNK of an acyclic format, which it sends twice.
+  const auto master = make_plant(bus("l") + "[[station]]\nname = \"m\"\nunit = \"mdxb\"\nrs485 = \"l\"\nprogram = \"P.IPC\"\n",
+                                 {{"P.IPC",
+                                   "#include <constb.h>\nMOVLNK Ml; MLDATA Mld;\nmain() { Ml.BusType = 2; Ml.Address = 1; Ml.Format = 134;"
+                                   " Ml.Service = 1; Ml.Index = 8318; Ml.DPointer = numof(Mld); _MoviLink(Ml); while (1) {} }\n"}});
+  ASSERT_NE(master, nullptr);
+  master->run_until(kSecond);
+  EXPECT_TRUE(master->store_memories());
+  EXPECT_TRUE(told(*master, "errors so far: response delay time elapsed 2"));
 }
 
 }  // namespace
