@@ -233,7 +233,7 @@ void Plant::check_expectations(Time until) {
   for (; next_due_ < due_.size() && due_[next_due_].expectation->at < until; ++next_due_) {
     const Due& due = due_[next_due_];
     if (due.expectation->at > queue_.now()) islands_->run_until(due.expectation->at);
-    const int32_t actual = signals::value_for(due.expectation->signal, due.signal);
+    const int64_t actual = signals::value_for(due.expectation->signal, due.signal);
     results_.push_back({due.expectation, actual == due.expectation->equals, actual});
   }
 }

@@ -22,7 +22,7 @@ namespace ipos::runtime {
 struct ExpectationResult {
   const Expectation* expectation;
   bool met;
-  int32_t actual;
+  int64_t actual;  // as Expectation::equals
 };
 
 class Plant final : public PlantParts {

@@ -188,7 +188,7 @@ struct PositionSwitch {
 struct Expectation {
   Signal signal;
   int64_t at = 0;  // ns
-  int32_t equals = 0;
+  int64_t equals = 0;  // in units of the last decimal of the signal
   FilePlace place;
 };
 

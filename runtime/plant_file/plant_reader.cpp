@@ -2,6 +2,7 @@
 #include "runtime/plant_file/plant_reader.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "runtime/plant_file/state_names.hpp"
 #include "stdlib/parameters.hpp"
@@ -58,6 +59,63 @@ bool PlantReader::number(const toml::node& node, std::string_view what, int32_t&
     return false;
   }
   out = static_cast<int32_t>(static_cast<uint32_t>(value->get()));
+  return true;
+}
+
+namespace {
+
+// In units of the last of so many decimals; nothing where more are needed, or where it is no number.
+std::optional<double> in_units(const toml::node& node, int decimals) {
+  const auto value = node.value<double>();
+  if (!value || !std::isfinite(*value)) return std::nullopt;
+  double units = *value;
+  for (; decimals > 0; --decimals) units *= 10;
+  const double whole = std::round(units);
+  return std::abs(units - whole) <= 1e-9 * std::max(1.0, std::abs(units)) ? std::optional(whole) : std::nullopt;
+}
+
+uint8_t decimals_of(const toml::node& node) {
+  if (!node.is_floating_point()) return 0;
+  for (uint8_t n = 0; n <= kMostDecimals; ++n)
+    if (in_units(node, n)) return n;
+  return 0;
+}
+
+}  // namespace
+
+uint8_t PlantReader::expected_decimals(const toml::table& table, std::initializer_list<std::string_view> keys) {
+  uint8_t most = 0;
+  for (const std::string_view key : keys) {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) continue;
+    most = std::max(most, decimals_of(*node));
+    if (const toml::array* list = node->as_array())
+      for (const toml::node& one : *list) most = std::max(most, decimals_of(one));
+  }
+  return most;
+}
+
+bool PlantReader::expected_number(const toml::node& node, std::string_view what, const Signal& of, int64_t& out) {
+  if (node.is_floating_point() && of.kind != SignalKind::Any) {
+    error(place_of(node), fmt::format("{} must be a whole number; decimals are for signal = \"...\"", what));
+    return false;
+  }
+  if (!node.is_floating_point() && of.decimals == 0) {
+    int32_t whole = 0;
+    if (!number(node, what, whole)) return false;
+    out = whole;
+    return true;
+  }
+  if (!node.is_number()) {
+    error(place_of(node), fmt::format("{} must be a number", what));
+    return false;
+  }
+  const auto units = in_units(node, of.decimals);
+  if (!units || std::abs(*units) > 9e15) {
+    error(place_of(node), fmt::format("{} has more than {} decimals, or is too large", what, kMostDecimals));
+    return false;
+  }
+  out = static_cast<int64_t>(*units);
   return true;
 }
 

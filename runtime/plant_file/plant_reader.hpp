@@ -70,6 +70,10 @@ class PlantReader {
   std::string lines(const toml::table& table, std::string_view key, std::string_view what, bool required);
   // A 32-bit value; hexadecimal numbers may use all 32 bits.
   bool number(const toml::node& node, std::string_view what, int32_t& out);
+  // The same with as many decimals as the signal of an expectation has, in units of the last one. expected_decimals() finds
+  // how many: as many as the value with most of them among `keys`; a wrong one is told when it is read.
+  bool expected_number(const toml::node& node, std::string_view what, const Signal& of, int64_t& out);
+  static uint8_t expected_decimals(const toml::table& table, std::initializer_list<std::string_view> keys);
   // The value of a parameter of a unit: a number is the coding of the parameter channel, a text is what
   // people read: "2.5 s", "500 kBaud". False with an error, or when the unit is unknown.
   bool parameter_value(const toml::node& node, const stdlib::UnitType* unit, std::string_view parameter,

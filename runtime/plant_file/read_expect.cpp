@@ -27,12 +27,13 @@ void read_expectation(PlantReader& reader, const toml::table& table) {
                 expected.signal);
   expected.at = reader.duration(table, "at", kWhat, true);
   const toml::node* equals = table.get("equals");
-  if (equals != nullptr && expected.signal.kind == SignalKind::Parameter)
-    reader.parameter_value(*equals, reader.unit_of(expected.signal.station), expected.signal.name,
-                           expected.equals);
-  else if (equals != nullptr)
-    reader.number(*equals, "equals", expected.equals);
-  else
+  if (expected.signal.kind == SignalKind::Any) expected.signal.decimals = PlantReader::expected_decimals(table, {"equals"});
+  if (int32_t value = 0; equals != nullptr && expected.signal.kind == SignalKind::Parameter &&
+                         reader.parameter_value(*equals, reader.unit_of(expected.signal.station), expected.signal.name, value))
+    expected.equals = value;
+  else if (equals != nullptr && expected.signal.kind != SignalKind::Parameter)
+    reader.expected_number(*equals, "equals", expected.signal, expected.equals);
+  else if (equals == nullptr)
     reader.error(expected.place, "an [[expect]] needs equals = ...");
   reader.result.plant.expectations.push_back(std::move(expected));
 }

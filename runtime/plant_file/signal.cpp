@@ -43,6 +43,16 @@ int bit_of(std::span<const BinaryTerminal> all, std::string_view name) {
 
 }  // namespace
 
+std::string decimal_text(int64_t value, int decimals) {
+  std::string digits = std::to_string(value < 0 ? -value : value);
+  if (decimals > 0) {
+    const auto least = static_cast<size_t>(decimals) + 1;
+    if (digits.size() < least) digits.insert(0, least - digits.size(), '0');
+    digits.insert(digits.size() - least + 1, 1, '.');
+  }
+  return (value < 0 ? "-" : "") + digits;
+}
+
 std::span<const AnalogKind> analog_kinds() { return kAnalogKinds; }
 
 bool AnalogKind::is_of(const stdlib::UnitType& of) const {

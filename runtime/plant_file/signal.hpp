@@ -19,7 +19,13 @@ struct Signal {
   SignalKind kind = SignalKind::Variable;
   std::string name;  // as written: "lCount", "H10", "P301", "DI03", "AI1", "DO01", "fault"
   uint8_t line = 0;  // Input: see above; Output: bit of OutputLevel H482; State: row of station_states()
+  uint8_t decimals = 0;  // Any: an expectation compares the number shown to so many, and its values count units of the last one
 };
+
+// The most decimals of an expectation, as many as a signal has that is shown with most.
+inline constexpr uint8_t kMostDecimals = 6;
+// 443 with 2 decimals is "4.43".
+std::string decimal_text(int64_t value, int decimals);
 
 struct BinaryTerminal {
   std::string_view name;

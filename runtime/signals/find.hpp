@@ -72,9 +72,9 @@ std::optional<Signal> find_signal(const runtime::PlantParts& plant, const runtim
 // What a stimulus acts on. Where it names a signal of any kind, its value is read here, as only the signal knows its unit.
 std::optional<Signal> find_target(const runtime::PlantParts& plant, runtime::Stimulus& stimulus, std::string& why);
 
-// What an expectation on it compares: of `signal = ...` the number shown, rounded; of `state = ...` and the others the
-// sample.
-int32_t value_for(const runtime::Signal& named, const Signal& signal);
+// What an expectation on it compares: of `signal = ...` the number shown, rounded to the decimals of the expectation; of
+// `state = ...` and the others the sample.
+int64_t value_for(const runtime::Signal& named, const Signal& signal);
 
 // --- among some ---
 

@@ -214,8 +214,8 @@ std::optional<Signal> find_target(const PlantParts& plant, Stimulus& stimulus, s
   return signal;
 }
 
-int32_t value_for(const runtime::Signal& named, const Signal& signal) {
-  return named.kind == SignalKind::Any ? signal.rounded() : static_cast<int32_t>(signal.read());
+int64_t value_for(const runtime::Signal& named, const Signal& signal) {
+  return named.kind == SignalKind::Any ? signal.rounded(named.decimals) : static_cast<int32_t>(signal.read());
 }
 
 std::optional<Signal> find_among(std::span<const Signal> all, std::string_view name) {

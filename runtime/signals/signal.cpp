@@ -98,9 +98,11 @@ std::string Signal::words(int64_t sample) const {
   return text(sample) + (unit.empty() ? "" : " " + unit);
 }
 
-int32_t Signal::rounded() const {
+int64_t Signal::rounded(int digits) const {
   const int64_t sample = read();
-  return static_cast<int32_t>(factor == 1 ? sample : std::lround(static_cast<double>(sample) * factor));
+  double scale = factor;
+  for (; digits > 0; --digits) scale *= 10;
+  return scale == 1 ? sample : std::llround(static_cast<double>(sample) * scale);
 }
 
 std::string_view Signal::own_name() const {

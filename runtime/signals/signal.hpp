@@ -67,8 +67,9 @@ struct Signal {
   void append_text(std::string& out, int64_t sample) const;
   // With its unit, or in the words of a parameter: "1500.000 rpm", "2.5 s".
   std::string words(int64_t sample) const;
-  // The number shown, rounded: what expectations and expressions compare.
-  int32_t rounded() const;
+  // The number shown, rounded to so many digits behind the point and counted in units of the last one: what expectations and expressions
+  // compare.
+  int64_t rounded(int digits = 0) const;
   std::string_view own_name() const;  // without the station's part
 
   bool is_variable() const { return group == Group::Variable || group == Group::SystemVariable; }

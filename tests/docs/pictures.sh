@@ -31,6 +31,7 @@ plot() {
 [ "${2:-}" = --renew ] && renew=1
 terminal test-report.svg "test tests/tools/testing/broken/feeder.test.toml"
 plot isync.svg "run examples/isync/isync.toml --for 4s --plot - --signals master.speed,slave.speed,master.position,slave.position"
+plot nameplate.svg "run examples/nameplate/nameplate.toml --for 4s --plot - --signals ideal.speed,real.speed,ideal.current,real.current,real.AO1,real.DB00,ideal.shaft_angle,real.shaft_angle"
 for picture in docs/images/*.png; do
   [ "$(stat -c %s "$picture")" -le 65536 ] || { echo "$picture is larger than 64 KiB; docs/images/smaller.sh makes it smaller" >&2; status=1; }
 done

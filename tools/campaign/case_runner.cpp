@@ -101,7 +101,8 @@ void CaseRunner::run_plant(const Levels& levels, Outcome& outcome) {
     const runtime::Expectation& one = *result.expectation;
     if (!result.met)
       outcome.failed.push_back(fmt::format("{}: {} of {} is {} at {}, expected {}", place(one.place), one.signal.name,
-                                           one.signal.station, result.actual, testing::time_text(one.at), one.equals));
+                                           one.signal.station, runtime::decimal_text(result.actual, one.signal.decimals),
+                                           testing::time_text(one.at), runtime::decimal_text(one.equals, one.signal.decimals)));
   }
   for (const runtime::PlantError& failure : plant.machines().failures())
     outcome.failed.push_back(fmt::format("{}: {}", place(failure.place), failure.text));

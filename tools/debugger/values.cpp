@@ -78,7 +78,7 @@ ValuePlace find_again(const runtime::Plant& plant, const ValuePlace& place) {
 
 int32_t read_value(const ValuePlace& place) {
   const Signal& signal = *place.signal;
-  return signal.parameter != nullptr ? static_cast<int32_t>(signal.read()) : signal.rounded();
+  return signal.parameter != nullptr ? static_cast<int32_t>(signal.read()) : static_cast<int32_t>(signal.rounded());
 }
 
 void write_value(const ValuePlace& place, int32_t value) {

@@ -198,12 +198,13 @@ class FlushTimer {
 };
 
 // "2000 (0x7d0)"; of a parameter with the text people read: "2.500 s".
-std::string expected_text(const runtime::Plant& plant, const runtime::Signal& signal, int32_t value) {
+std::string expected_text(const runtime::Plant& plant, const runtime::Signal& signal, int64_t value) {
   for (const auto& station : plant.stations()) {
     if (signal.kind != runtime::SignalKind::Parameter || station->config().name != signal.station) continue;
     const auto* row = stdlib::parameter_table(*station->config().unit).find(signal.name);
-    if (row != nullptr) return stdlib::parameter_text(*row, value);
+    if (row != nullptr) return stdlib::parameter_text(*row, static_cast<int32_t>(value));
   }
+  if (signal.decimals > 0) return runtime::decimal_text(value, signal.decimals);
   return fmt::format("{} ({:#x})", value, static_cast<uint32_t>(value));
 }
 

@@ -52,24 +52,29 @@ std::optional<Subject> read_subject(PlantReader& reader, const toml::table& tabl
   if (!reader.signal(table, kExpect, {"variable", "parameter", "input", "output", "state", "signal"},
                      subject.signal))
     return std::nullopt;
+  if (subject.signal.kind == SignalKind::Any)
+    subject.signal.decimals = table.contains("every")  // whose tolerance is a time
+                                  ? PlantReader::expected_decimals(table, {"equals", "not", "min", "max", "one_of"})
+                                  : PlantReader::expected_decimals(table, {"equals", "not", "min", "max", "one_of", "tolerance", "sequence"});
   return subject;
 }
 
 // In the form the subject has; false with an error.
 bool read_value(PlantReader& reader, const toml::node& node, std::string_view key, const Subject& subject,
                 int64_t& out) {
-  if (node.is_boolean()) {
+  if (node.is_boolean() && subject.signal.decimals == 0) {
     out = node.as_boolean()->get() ? 1 : 0;
     return true;
   }
-  int32_t value = 0;
-  const bool parameter =
-      subject.kind == Subject::Kind::Signal && subject.signal.kind == SignalKind::Parameter;
-  if (parameter
-          ? !reader.parameter_value(node, reader.unit_of(subject.signal.station), subject.signal.name, value)
-          : !reader.number(node, key, value))
-    return false;
-  out = subject.kind == Subject::Kind::ProcessData ? static_cast<uint16_t>(value) : value;
+  const bool process_data = subject.kind == Subject::Kind::ProcessData;
+  if (!process_data && subject.signal.kind == SignalKind::Parameter) {
+    int32_t value = 0;
+    if (!reader.parameter_value(node, reader.unit_of(subject.signal.station), subject.signal.name, value)) return false;
+    out = value;
+    return true;
+  }
+  if (!reader.expected_number(node, key, subject.signal, out)) return false;
+  if (process_data) out = static_cast<uint16_t>(out);
   return true;
 }
 

@@ -10,11 +10,12 @@
 namespace ipos::tools::testing {
 namespace {
 
-std::string range_text(std::pair<int64_t, int64_t> range) {
-  if (range.first == range.second) return std::to_string(range.first);
-  if (range.first == INT64_MIN) return fmt::format("at most {}", range.second);
-  if (range.second == INT64_MAX) return fmt::format("at least {}", range.first);
-  return fmt::format("{} to {}", range.first, range.second);
+std::string range_text(const Subject& of, std::pair<int64_t, int64_t> range) {
+  const std::string first = of.value_text(range.first);
+  if (range.first == range.second) return first;
+  if (range.first == INT64_MIN) return "at most " + of.value_text(range.second);
+  if (range.second == INT64_MAX) return "at least " + first;
+  return first + " to " + of.value_text(range.second);
 }
 
 }  // namespace
@@ -25,13 +26,15 @@ std::string Subject::text() const {
   return fmt::format("{} {}{}{} on {}", message, quote, pattern, quote, bus);
 }
 
+std::string Subject::value_text(int64_t value) const { return runtime::decimal_text(value, signal.decimals); }
+
 bool Subject::is_old() const {
   return kind == Kind::Signal && signal.kind == runtime::SignalKind::State && !runtime::old_state(signal.name).empty();
 }
 
 bool Subject::operator==(const Subject& other) const {
   return kind == other.kind && signal.station == other.signal.station && signal.kind == other.signal.kind &&
-         signal.name == other.signal.name && bus == other.bus && pattern == other.pattern;
+         signal.name == other.signal.name && signal.decimals == other.signal.decimals && bus == other.bus && pattern == other.pattern;
 }
 
 bool Condition::holds(int64_t value) const {
@@ -41,9 +44,9 @@ bool Condition::holds(int64_t value) const {
   return inside != negated;
 }
 
-std::string Condition::text() const {
+std::string Condition::text(const Subject& of) const {
   std::vector<std::string> parts;
-  for (const auto& range : ranges) parts.push_back(range_text(range));
+  for (const auto& range : ranges) parts.push_back(range_text(of, range));
   return fmt::format("{}{}{}", negated ? "not " : "", parts.size() > 1 ? "one of " : "",
                      fmt::join(parts, ", "));
 }

@@ -31,6 +31,7 @@ struct Subject {
   bool is_event() const { return kind == Kind::Message; }
   bool is_old() const;  // a state that counts in another scale than the signal of its name
   std::string text() const;  // "lPieces of belt", "frame 400#* on sbus"
+  std::string value_text(int64_t value) const;  // "7", "4.43"
   bool operator==(const Subject& other) const;
 };
 
@@ -40,7 +41,7 @@ struct Condition {
   bool negated = false;
 
   bool holds(int64_t value) const;
-  std::string text() const;  // "7", "5 to 9", "not 0", "one of 1, 3"
+  std::string text(const Subject& of) const;  // "7", "5 to 9", "not 0", "one of 1, 3"
 };
 
 struct Expect {

@@ -26,19 +26,20 @@ size_t Check::length() const {
 }
 
 std::string Check::wanted() const {
-  return expect_.subject.is_event() ? expect_.patterns[next_] : std::to_string(expect_.values[next_]);
+  return expect_.subject.is_event() ? expect_.patterns[next_] : expect_.subject.value_text(expect_.values[next_]);
 }
 
 void Check::sample(Time now, int64_t value) {
   if (verdict_ != Verdict::Open || now < start_ || now > end_) return;
   const std::string name = expect_.subject.text();
+  const auto is = [&] { return expect_.subject.value_text(value); };
   const bool first = !last_value_;
   const bool changed = first || value != *last_value_;
   last_value_ = value;
   ++seen_;
   if (expect_.kind == Expect::Kind::Sequence) {
     if (changed)
-      element(now, value == expect_.values[next_], fmt::format("{} became {}", name, value), first);
+      element(now, value == expect_.values[next_], fmt::format("{} became {}", name, is()), first);
     return;
   }
   const bool holds = expect_.condition.holds(value);
@@ -46,16 +47,16 @@ void Check::sample(Time now, int64_t value) {
     case Expect::Kind::Now:
       if (holds) return meet();
       return fail(
-          fmt::format("{} is {} at {}, expected {}", name, value, time_text(now), expect_.condition.text()));
+          fmt::format("{} is {} at {}, expected {}", name, is(), time_text(now), expect_.condition.text(expect_.subject)));
     case Expect::Kind::Always:
       if (!holds)
-        fail(fmt::format("{} is {} at {}, expected always {}", name, value, time_text(now),
-                         expect_.condition.text()));
+        fail(fmt::format("{} is {} at {}, expected always {}", name, is(), time_text(now),
+                         expect_.condition.text(expect_.subject)));
       break;
     case Expect::Kind::Never:
       if (holds)
-        fail(fmt::format("{} is {} at {}, expected never {}", name, value, time_text(now),
-                         expect_.condition.text()));
+        fail(fmt::format("{} is {} at {}, expected never {}", name, is(), time_text(now),
+                         expect_.condition.text(expect_.subject)));
       break;
     default:
       // What is so from the beginning has not become so.
@@ -97,7 +98,7 @@ void Check::occur(Time now) {
   ++count_;
   const std::string name = expect_.subject.is_event()
                                ? expect_.subject.text()
-                               : fmt::format("{} = {}", expect_.subject.text(), expect_.condition.text());
+                               : fmt::format("{} = {}", expect_.subject.text(), expect_.condition.text(expect_.subject));
   switch (expect_.kind) {
     case Expect::Kind::Within: return meet();
     case Expect::Kind::Count:
@@ -136,13 +137,13 @@ void Check::finish(Time now) {
   if (verdict_ != Verdict::Open) return;
   const Time until = std::min(now, end_);
   const std::string name = expect_.subject.text();
-  const std::string is = last_value_ ? fmt::format(", is {}", *last_value_) : "";
+  const std::string is = last_value_ ? ", is " + expect_.subject.value_text(*last_value_) : "";
   switch (expect_.kind) {
     case Expect::Kind::Within:
       return fail(
           expect_.subject.is_event()
               ? fmt::format("{} did not come from {} to {}", name, time_text(start_), time_text(until))
-              : fmt::format("{} did not become {} from {} to {}{}", name, expect_.condition.text(),
+              : fmt::format("{} did not become {} from {} to {}{}", name, expect_.condition.text(expect_.subject),
                             time_text(start_), time_text(until), is));
     case Expect::Kind::Always:
     case Expect::Kind::Never:
@@ -153,7 +154,7 @@ void Check::finish(Time now) {
     case Expect::Kind::Count:
       if (count_ >= expect_.least) return meet();
       return fail(fmt::format("{}{} {} times from {} to {}, expected {}{}", name,
-                              expect_.subject.is_event() ? " came" : " became " + expect_.condition.text(),
+                              expect_.subject.is_event() ? " came" : " became " + expect_.condition.text(expect_.subject),
                               count_, time_text(start_), time_text(until), expect_.least,
                               expect_.most == expect_.least ? "" : " at least"));
     case Expect::Kind::Every:

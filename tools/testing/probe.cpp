@@ -47,7 +47,7 @@ Reader Probe::reader_of(const Subject& subject, std::string& why) {
     return signals::find_in_group(station(subject.signal.station), signals::Group::ProcessData, subject.signal.name)->read;
   auto signal = signals::find_signal(plant_, subject.signal, why);
   if (!signal) return {};
-  return [named = subject.signal, signal = *std::move(signal)] { return int64_t{signals::value_for(named, signal)}; };
+  return [named = subject.signal, signal = *std::move(signal)] { return signals::value_for(named, signal); };
 }
 
 Reader Probe::follow(const Subject& subject, std::string& why) {
@@ -116,9 +116,9 @@ void Probe::describe(const Subject& subject, Finding& finding) const {
     const Change& last = followed.changes.back();
     const Subject& of = followed.subject;
     std::string text = of.is_old() ? of.text() : fmt::format("{}.{}", of.signal.station, of.signal.name);
-    text += fmt::format(" = {} since {}", last.value, time_text(last.time));
+    text += fmt::format(" = {} since {}", of.value_text(last.value), time_text(last.time));
     for (size_t n = followed.changes.size() - 1; n-- > 0;)
-      text += fmt::format(", {} from {}", followed.changes[n].value, time_text(followed.changes[n].time));
+      text += fmt::format(", {} from {}", of.value_text(followed.changes[n].value), time_text(followed.changes[n].time));
     finding.values.push_back(std::move(text));
   }
   finding.tasks = tasks_of(station);

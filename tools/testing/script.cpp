@@ -164,8 +164,8 @@ void Script::look_now(const Item& item, const Expect& expect) {
   const Reader& read = readers_[&item];
   const int64_t value = read();
   if (expect.condition.holds(value)) return;
-  add_finding(&item, fmt::format("{} is {} at {}, expected {}", expect.subject.text(), value,
-                                 time_text(cursor_), expect.condition.text()));
+  add_finding(&item, fmt::format("{} is {} at {}, expected {}", expect.subject.text(), expect.subject.value_text(value),
+                                 time_text(cursor_), expect.condition.text(expect.subject)));
   later_.push_back({result_.findings.size() - 1, &expect, &read, cursor_});
 }
 
@@ -218,7 +218,7 @@ bool Script::passed(Time now) {
     const int64_t value = (*later.read)();
     if (!later.expect->condition.holds(value)) return false;
     result_.findings[later.finding].values.push_back(
-        fmt::format("{} becomes {} at {}, {} later", later.expect->subject.text(), value, time_text(now),
+        fmt::format("{} becomes {} at {}, {} later", later.expect->subject.text(), later.expect->subject.value_text(value), time_text(now),
                     time_text(now - later.wanted)));
     return true;
   });
@@ -270,7 +270,7 @@ void Script::finish() {
   for (const Later& later : later_)
     result_.findings[later.finding].values.push_back(
         fmt::format("{} does not become {} until {}, the end of the test", later.expect->subject.text(),
-                    later.expect->condition.text(), time_text(plant_.now())));
+                    later.expect->condition.text(later.expect->subject), time_text(plant_.now())));
   find_faults();
   if (result_.checks == 0 && result_.findings.empty()) add_finding(nullptr, "the test expects nothing");
 }

@@ -68,7 +68,7 @@ TEST(PlantFileMistakes, NumbersHave32Bits) {
       kMistakenUnit + "[[expect]]\nstation = 'u'\nat = '1ms'\nvariable = 'x'\nequals = ";
   expect_mistakes(begin, {{"^4294967296\n", "equals = 4294967296 does not fit into 32 bits"},
                           {"^-2147483649\n", "equals = -2147483649 does not fit into 32 bits"},
-                          {"^1.0\n", "equals must be a whole number"},
+                          {"^1.0\n", "equals must be a whole number; decimals are for signal = \"...\""},
                           {"^true\n", "equals must be a whole number"}});
   for (const auto& [text, number] :
        {std::pair("0xFFFFFFFF", -1), std::pair("4294967295", -1), std::pair("-2147483648", INT32_MIN),

@@ -99,6 +99,37 @@ TEST(Expectations, Equality) {
   fails(kCount + "at = \"95ms\"\nnot = 9\n", "expected not 9");
 }
 
+// 5.254 V at the analog input: it is compared to as many decimals as the expectation has.
+TEST(Expectations, DecimalsOfSignals) {
+  const std::string input = "[[step]]\nat = \"10ms\"\nstation = \"unit2\"\nanalog = \"AI1\"\nset = \"5.254 V\"\n"
+                            "[[expect]]\nstation = \"unit2\"\nsignal = \"AI1\"\nat = \"95ms\"\n";
+  for (const char* right : {"equals = 5", "equals = 5.3", "equals = 5.25", "equals = 5.254", "equals = 5.254000",
+                            "equals = 5\ntolerance = 0.3", "equals = 5.26\ntolerance = 0.01", "not = 5.26", "min = 5.25\nmax = 5.3",
+                            "max = 6", "one_of = [5, 5.25]", "sequence = [5.25]"})
+    passes(input + right + (std::string(right).starts_with("seq") ? "\nwithin = \"1s\"\n" : "\n"));
+  fails(input + "equals = 5.26\n", "AI1 of unit2 is 5.25 at 95 ms, expected 5.26");
+  fails(input + "equals = 5.255\n", "AI1 of unit2 is 5.254 at 95 ms, expected 5.255");
+  fails(input + "equals = 5\ntolerance = 0.2\n", "is 5.3 at 95 ms, expected 4.8 to 5.2");
+  fails(input + "min = 5.5\n", "is 5.3 at 95 ms, expected at least 5.5");
+  fails(input + "equals = -0.05\n", "is 5.25 at 95 ms, expected -0.05");
+  fails(input + "equals = 5.26\n", "unit2.AI1 = 5.25 since 10 ms, 0.00 from");
+}
+
+TEST(Expectations, DecimalsThatCannotBe) {
+  const auto refuses = [](const std::string& items, const std::string& because) {
+    const CommandResult result = run_items(items);
+    EXPECT_NE(result.exit_code, 0) << items;
+    EXPECT_TRUE(contains(result.out + result.err, because)) << items << result.out << result.err;
+  };
+  const std::string signal = "[[expect]]\nstation = \"unit2\"\nsignal = \"AI1\"\nat = \"95ms\"\n";
+  refuses(signal + "equals = 5.1234567\n", "equals has more than 6 decimals, or is too large");
+  refuses(signal + "equals = nan\n", "equals has more than 6 decimals, or is too large");
+  refuses(signal + "equals = 1e300\n", "equals has more than 6 decimals, or is too large");
+  refuses(signal + "min = 0.5\nmax = \"6\"\n", "max must be a number");
+  refuses(signal + "min = 0.5\nmax = 0.4\n", "max is below min");
+  refuses(kCount + "at = \"95ms\"\nequals = 9.5\n", "equals must be a whole number; decimals are for signal = \"...\"");
+}
+
 TEST(Expectations, RangeAndChoice) {
   passes(kCount + "at = \"95ms\"\nmin = 9\nmax = 9\n");
   passes(kCount + "at = \"95ms\"\nmin = 9\n");
