@@ -18,6 +18,17 @@ namespace ipos::compiler {
 struct MovlnkMember {
   enum : uint32_t { BusType, Address, Format, Service, Index, DPointer, Result };
 };
+// WritePar ReadPar PO1 PO2 PO3 PI1 PI2 PI3 (1053 1610 p. 47).
+struct MldataMember {
+  enum : uint32_t { ReadPar = 1, Input = 5, Size = 8 };
+};
+// What a Format of MOVLNK carries: 0..6, and 128 more for acyclic ones. Nothing: there is no such format.
+struct LinkFormat {
+  bool parameter;
+  uint32_t words;  // process data
+};
+std::optional<LinkFormat> link_format(int32_t code);
+
 inline constexpr int32_t kOwnUnitAddress = 253;  // MOVLNK to it does not wait
 
 // What the checks of the commands share.
@@ -27,6 +38,7 @@ class CommandCheck {
       : context_(context), roots_(roots), flow_(flow) {}
 
   void operator()(const ConstantFlow::Point& point);
+  void operator()(const ConstantFlow::Unfed& unfed);
 
   // MOVLNK commands that write into the non-volatile memory of a unit.
   const std::set<const checked::Expr*>& kept() const { return kept_; }
@@ -37,6 +49,12 @@ class CommandCheck {
     std::optional<uint32_t> data{};  // first variable
   };
   const std::map<const checked::Expr*, Exchange>& exchanges() const { return exchanges_; }
+  // SBus objects that are sent cyclically or received, by the command that sets them up: their number, where it is known.
+  struct Object {
+    std::optional<int32_t> number{};
+    bool receive = false;
+  };
+  const std::map<const checked::Expr*, Object>& objects() const { return objects_; }
 
  private:
   using Point = ConstantFlow::Point;
@@ -91,6 +109,8 @@ class CommandCheck {
   std::set<std::pair<Diag, uint32_t>> reported_;
   std::set<const checked::Expr*> kept_;
   std::map<const checked::Expr*, Exchange> exchanges_;
+  std::map<const checked::Expr*, Object> objects_;
+  std::set<uint32_t> short_watchdogs_;  // where they are started
 };
 
 // The whole of it, and what needs no values: objects that nothing starts, timers, memory (program_check.cpp).

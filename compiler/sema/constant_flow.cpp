@@ -27,17 +27,18 @@ bool endless(const ExprPtr& condition) {
 
 ConstantFlow::Set ConstantFlow::at(uint32_t number) const {
   const uint32_t slot = number < slots_.size() ? slots_[number] : kNotFollowed;
-  return slot == kNotFollowed ? KnownValues::kAny : state_.values[slot];
+  return slot < state_.values.size() ? state_.values[slot] : KnownValues::kAny;
 }
 
 // What several roots write, or others may, stays what it is.
 void ConstantFlow::store(uint32_t number, Set value) {
   const uint32_t slot = number < slots_.size() ? slots_[number] : kNotFollowed;
-  if (slot == kNotFollowed || pinned_[slot] || !std::has_single_bit(writers_[slot]) || writers_[slot] >> 63 != 0) return;
+  if (slot >= state_.values.size() || pinned_[slot] || !std::has_single_bit(writers_[slot]) || writers_[slot] >> 63 != 0) return;
   state_.values[slot] = value;
 }
 
 void ConstantFlow::forget(uint32_t number, uint32_t count) {
+  feeds_ += number <= kWatchdog && kWatchdog < number + count;
   for (uint32_t n = number; n < number + count && n < slots_.size(); ++n) store(n, KnownValues::kAny);
 }
 
@@ -47,6 +48,7 @@ void ConstantFlow::forget(const std::optional<NumberRange>& within) {
 }
 
 void ConstantFlow::forget_all() {
+  ++feeds_;
   for (const uint32_t number : numbers_) store(number, KnownValues::kAny);
   state_.defined.clear();
 }
@@ -58,14 +60,16 @@ void ConstantFlow::join(State& into, const State& from) {
     return;
   }
   for (size_t slot = 0; slot < into.values.size(); ++slot)
-    into.values[slot] = sets_.join(into.values[slot], from.values[slot]);
+    into.values[slot] = numbers_[slot] == kWatchdog ? join_watchdog(into.values[slot], from.values[slot])
+                                                    : sets_.join(into.values[slot], from.values[slot]);
   std::erase_if(into.defined, [&](const Defined& one) {
     return std::find(from.defined.begin(), from.defined.end(), one) == from.defined.end();
   });
 }
 
-void ConstantFlow::run(const Visit& visit) {
+void ConstantFlow::run(const Visit& visit, const VisitUnfed& unfed) {
   visit_ = &visit;
+  unfed_ = &unfed;
   budget_ = kMostNodes;
   running_.assign(program_.functions.size(), false);
   for (root_ = 0; root_ < roots_.roots.size(); ++root_) {
@@ -77,6 +81,7 @@ void ConstantFlow::run(const Visit& visit) {
     }
     frames_.clear();
     call(roots_.roots[root_].function);
+    if (root_ == 0) tell_unfed(at(kWatchdog), {});
   }
 }
 
@@ -87,10 +92,12 @@ void ConstantFlow::call(size_t function) {
   const size_t caller = std::exchange(function_, function);
   State outer = std::exchange(returns_, nowhere());
   std::vector<Frame> frames = std::exchange(frames_, {});
+  const size_t exits = exits_;
   run(program_.functions[function].body);
   join(state_, returns_);
   returns_ = std::move(outer);
   frames_ = std::move(frames);
+  exits_ = exits;
   function_ = caller;
   running_[function] = false;
 }
@@ -114,11 +121,11 @@ void ConstantFlow::run(const checked::StmtPtr& stmt) {
                    run(node.otherwise);
                    join(state_, before);
                  },
-                 [&](const checked::While& node) { loop({node.condition, nullptr, nullptr, node.body}); },
-                 [&](const checked::DoWhile& node) { loop({nullptr, node.condition, nullptr, node.body}); },
+                 [&](const checked::While& node) { loop({node.condition, nullptr, nullptr, node.body, stmt->span}); },
+                 [&](const checked::DoWhile& node) { loop({nullptr, node.condition, nullptr, node.body, stmt->span}); },
                  [&](const checked::For& node) {
                    value_of(node.init);
-                   loop({node.condition, nullptr, node.step, node.body});
+                   loop({node.condition, nullptr, node.step, node.body, stmt->span});
                  },
                  [&](const checked::Switch& node) { choose(node); },
                  [&](const checked::CaseLabel&) {
@@ -130,14 +137,19 @@ void ConstantFlow::run(const checked::StmtPtr& stmt) {
                    for (auto frame = frames_.rbegin(); frame != frames_.rend(); ++frame)
                      if (frame->entry == nullptr) return leave(frame->continues);
                  },
-                 [&](const checked::Return&) { leave(returns_); },
+                 [&](const checked::Return&) {
+                   ++exits_;
+                   leave(returns_);
+                 },
              },
              stmt->node);
 }
 
 void ConstantFlow::loop(const Loop& parts) {
   State head = state_;
-  for (;;) {
+  const Set watchdog = at(kWatchdog);
+  const size_t feeds = feeds_, exits = exits_;
+  for (bool first = true;; first = false) {
     frames_.push_back({nowhere(), nowhere(), nullptr});
     value_of(parts.before);
     State left = parts.after == nullptr && !endless(parts.before) ? state_ : nowhere();
@@ -150,6 +162,7 @@ void ConstantFlow::loop(const Loop& parts) {
     value_of(parts.step);
     join(left, frames_.back().breaks);
     frames_.pop_back();
+    if (first && head.reached && !left.reached && feeds_ == feeds && exits_ == exits) tell_unfed(watchdog, parts.place);
     State next = head;
     join(next, state_);
     if (next == head || budget_ == 0) {
@@ -189,7 +202,7 @@ ConstantFlow::Set ConstantFlow::value_of(const checked::Assign& node, Span span)
   } else if (constant != nullptr || (right != nullptr && !right->assigned())) {
     value = sets_.of({right->value, span});
   }
-  store(number, value);
+  number == kWatchdog ? set_watchdog(value) : store(number, value);
   return value;
 }
 
@@ -219,7 +232,7 @@ ConstantFlow::Set ConstantFlow::value_of(const ExprPtr& expr) {
             if (node.place.offset != nullptr)
               forget(node.within);
             else
-              store(number, KnownValues::kAny);
+              forget(number, 1);
             return KnownValues::kAny;
           },
           [&](const checked::Binary& node) {
@@ -263,9 +276,10 @@ ConstantFlow::Set ConstantFlow::value_of(const ExprPtr& expr) {
             return KnownValues::kAny;
           },
           [&](const checked::SystemCall& node) {
+            Set last = KnownValues::kAny;
             for (const checked::Argument& argument : node.arguments)
-              if (const ExprPtr* value = std::get_if<ExprPtr>(&argument)) value_of(*value);
-            command(*expr, node);
+              if (const ExprPtr* value = std::get_if<ExprPtr>(&argument)) last = value_of(*value);
+            command(*expr, node, last);
             return KnownValues::kAny;
           }},
       expr->node);

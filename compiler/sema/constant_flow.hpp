@@ -28,6 +28,12 @@ class ConstantFlow {
     const checked::SystemCall& call;
     size_t function;
     size_t root;
+    KnownValues::Set value;  // of its last argument that is computed; kAny without one
+  };
+  // A watchdog that runs for certain and is not set again for ever: where the program ends, or in an endless loop.
+  struct Unfed {
+    std::span<const KnownValue> watchdog;
+    Span loop;  // no place: the end of the program
   };
   // An SBus object that is set up for certain.
   struct Defined {
@@ -37,15 +43,17 @@ class ConstantFlow {
     bool operator==(const Defined&) const = default;
   };
   using Visit = std::function<void(const Point&)>;
+  using VisitUnfed = std::function<void(const Unfed&)>;
 
   ConstantFlow(const Context& context, const ProgramRoots& roots);
 
   // Calls `visit` for each command on each way that differs in values; a command may come several times.
-  void run(const Visit& visit);
+  void run(const Visit& visit, const VisitUnfed& unfed);
 
   // For `visit`: values of a variable, empty when they are not known.
   std::span<const KnownValue> values(uint32_t number) const { return sets_.values(at(number)); }
   const KnownValue* only(uint32_t number) const { return sets_.only(at(number)); }
+  const KnownValue* only_of(KnownValues::Set set) const { return sets_.only(set); }
   const std::vector<Defined>& defined() const { return state_.defined; }
 
  private:
@@ -64,6 +72,7 @@ class ConstantFlow {
   struct Loop {
     checked::ExprPtr before, after, step;
     checked::StmtPtr body;
+    Span place;
   };
 
   // constant_flow_setup.cpp
@@ -81,13 +90,17 @@ class ConstantFlow {
   void forget(const std::optional<NumberRange>& within);
   void forget_all();
   void join(State& into, const State& from);
-  static State nowhere() { return {false, {}, {}}; }
+  Set join_watchdog(Set a, Set b);
+  void set_watchdog(Set value);
+  void pass_time(int32_t ms);
+  void tell_unfed(Set watchdog, Span loop) const;
+  static State nowhere() { return {false, {}, {}}; }  // holds no values
 
   void run(const checked::StmtPtr& stmt);
   void loop(const Loop& parts);
   void choose(const checked::Switch& node);
   void call(size_t function);
-  void command(const checked::Expr& expr, const checked::SystemCall& node);
+  void command(const checked::Expr& expr, const checked::SystemCall& node, Set value);
   void define(const checked::Expr& expr, const checked::SystemCall& node);
   Set value_of(const checked::ExprPtr& expr);
   Set value_of(const checked::Assign& node, Span span);
@@ -106,12 +119,15 @@ class ConstantFlow {
   std::unordered_set<uint32_t> read_only_takers_;  // members that hold numbers of variables the unit only reads
 
   const Visit* visit_ = nullptr;
+  const VisitUnfed* unfed_ = nullptr;
   State state_;
   State returns_;
   std::vector<Frame> frames_;
   std::vector<bool> running_;  // functions
   size_t function_ = 0;
   size_t root_ = 0;
+  size_t feeds_ = 0;  // times at which the watchdog was set or stopped
+  size_t exits_ = 0;  // times at which the function that runs returned
   uint32_t budget_ = 0;  // nodes still to be looked at; 0: the rest stays unsaid
 };
 

@@ -42,6 +42,11 @@ void ConstantFlow::find_followed() {
     for (const checked::Expr* expr : contents_[n].calls) {
       const auto* call = std::get_if<checked::SystemCall>(&expr->node);
       if (call == nullptr) continue;
+      if (call->opcode == vm::Opcode::WaitH || call->opcode == vm::Opcode::WdOnH)
+        checked::walk(*expr, [&](const checked::Expr& inner) {
+          const auto* load = std::get_if<checked::Load>(&inner.node);
+          if (load != nullptr && load->place.offset == nullptr) follow(static_cast<uint32_t>(load->place.number));
+        });
       const OrderBlock orders = order_block(*call);
       for (uint32_t m = 0; m < orders.size; ++m) follow(orders.first + m);
       if (call->opcode == vm::Opcode::Scom && orders.result)

@@ -39,18 +39,6 @@ const std::vector<BusRow>& buses() {
   return rows;
 }
 
-struct LinkFormat {
-  bool parameter;
-  uint32_t words;
-};
-// 0..6, and 128 more for acyclic ones.
-std::optional<LinkFormat> link_format(int32_t code) {
-  const int32_t base = code >= 128 ? code - 128 : code;
-  if (base < 0 || base > 6) return std::nullopt;
-  if (base == 6) return LinkFormat{true, 0};
-  return LinkFormat{base % 2 == 0, static_cast<uint32_t>(base / 2 + 1)};
-}
-
 // "P130" where a number of the keypad stands in the place of an index.
 const stdlib::Parameter* by_number(int32_t index, const stdlib::UnitType& unit) {
   if (index < 1 || index > 999) return nullptr;
@@ -59,6 +47,13 @@ const stdlib::Parameter* by_number(int32_t index, const stdlib::UnitType& unit) 
 }
 
 }  // namespace
+
+std::optional<LinkFormat> link_format(int32_t code) {
+  const int32_t base = code >= 128 ? code - 128 : code;
+  if (base < 0 || base > 6) return std::nullopt;
+  if (base == 6) return LinkFormat{true, 0};
+  return LinkFormat{base % 2 == 0, static_cast<uint32_t>(base / 2 + 1)};
+}
 
 void CommandCheck::check_movilink(const Point& point) {
   const uint32_t first = order_block(point.call).first;

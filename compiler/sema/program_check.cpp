@@ -7,7 +7,9 @@
 
 #include "compiler/sema/command_check.hpp"
 #include "compiler/sema/command_writes.hpp"
+#include "compiler/sema/exchange_check.hpp"
 #include "compiler/sema/expressions.hpp"
+#include "compiler/sema/position_check.hpp"
 #include "compiler/sema/state_check.hpp"
 #include "compiler/sema/walk.hpp"
 #include "compiler/sema/written.hpp"
@@ -23,8 +25,6 @@ constexpr int32_t kStoreData = 4;        // set mem
 constexpr uint32_t kReload = stdlib::system_variable("T0_Reload");
 constexpr uint32_t kTimers[] = {stdlib::system_variable("Timer_0"), stdlib::system_variable("Timer_1"),
                                 stdlib::system_variable("Timer_2")};
-constexpr uint32_t kReadPar = 1, kInput = 5, kMldata = 8;  // in MLDATA, and its size
-
 struct GivenCommand {
   const checked::Expr* expr;
   const checked::SystemCall* call;
@@ -38,7 +38,7 @@ struct GivenCommand {
 class ProgramCheck {
  public:
   ProgramCheck(Context& context, const ProgramRoots& roots, const CommandCheck& commands)
-      : context_(context), roots_(roots), kept_(commands.kept()), exchanges_(commands.exchanges()) {}
+      : context_(context), roots_(roots), kept_(commands.kept()), exchanges_(commands.exchanges()), objects_(commands.objects()) {}
 
   void run(const Written& written) {
     for (size_t n = 0; n < context_.program.functions.size(); ++n)
@@ -168,10 +168,10 @@ class ProgramCheck {
   bool is_used(const CommandCheck::Exchange& exchange, const Numbers& read) const {
     if (exchange.own_unit) return false;
     if (exchange.writes) return true;
-    if (!exchange.data || *exchange.data + kMldata > kMaxNumbers) return false;
+    if (!exchange.data || *exchange.data + MldataMember::Size > kMaxNumbers) return false;
     const uint32_t data = *exchange.data;
-    bool used = read.test(data + kReadPar);
-    for (uint32_t n = kInput; n < kMldata; ++n) used = used || read.test(data + n);
+    bool used = read.test(data + MldataMember::ReadPar);
+    for (uint32_t n = MldataMember::Input; n < MldataMember::Size; ++n) used = used || read.test(data + n);
     return used;
   }
 
@@ -248,8 +248,13 @@ class ProgramCheck {
     }
     const auto* call = std::get_if<checked::SystemCall>(&expr.node);
     if (call == nullptr) return;
+    if (const auto object = objects_.find(&expr); object != objects_.end() && object->second.number && told_.insert(&expr).second)
+      context_.diagnostics
+          .report(Diag::ObjectTwice, expr.span,
+                  {fmt::format("{}", *object->second.number), object->second.receive ? "received" : "sent"})
+          .notes.push_back({{}, "it stands in an endless loop, whose first turn sets it up"});
     const bool stores = call->opcode == Opcode::Memorize && GivenCommand{&expr, call}.word(0) != 0 && GivenCommand{&expr, call}.word(0) != 2;
-    if ((stores || kept_.contains(&expr)) && worn_.insert(&expr).second)
+    if ((stores || kept_.contains(&expr)) && told_.insert(&expr).second)
       context_.diagnostics.report(Diag::MemoryWear, expr.span,
                                   {stores ? "this stores" : "ML_S_WR writes"});
   }
@@ -258,11 +263,12 @@ class ProgramCheck {
   const ProgramRoots& roots_;
   const std::set<const checked::Expr*>& kept_;
   const std::map<const checked::Expr*, CommandCheck::Exchange>& exchanges_;
+  const std::map<const checked::Expr*, CommandCheck::Object>& objects_;
   std::vector<GivenCommand> commands_;
   Numbers written_;
   std::set<uint32_t> unread_;
   std::set<size_t> entered_;
-  std::set<const checked::Expr*> worn_;
+  std::set<const checked::Expr*> told_;
 };
 
 }  // namespace
@@ -274,7 +280,15 @@ void check_program(Context& context, const ProgramRoots& roots, const CommandChe
 void check_commands(Context& context, const ProgramRoots& roots) {
   ConstantFlow flow(context, roots);
   CommandCheck check(context, roots, flow);
-  flow.run([&](const ConstantFlow::Point& point) { check(point); });
+  ExchangeCheck exchanges(context, roots, flow);
+  flow.run(
+      [&](const ConstantFlow::Point& point) {
+        check(point);
+        exchanges.note(point);
+      },
+      [&](const ConstantFlow::Unfed& unfed) { check(unfed); });
+  exchanges.run();
+  check_positions(context, roots);
   const Written written(context);
   check_program(context, roots, check, written);
   check_states(context, roots, written);

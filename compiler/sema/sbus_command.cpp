@@ -57,7 +57,10 @@ void CommandCheck::check_offset(uint32_t first) {
 // One structure may define several objects, but each under a number of its own.
 void CommandCheck::check_twice(const Point& point, uint32_t first, bool receive) {
   const KnownValue* object = flow_.only(first);
-  if (object == nullptr || !object->assigned()) return;
+  const bool known = object != nullptr && object->assigned();
+  const auto [at, fresh] = objects_.try_emplace(&point.expr, Object{known ? std::optional(object->value) : std::nullopt, receive});
+  if (!fresh && (!known || at->second.number != object->value)) at->second.number.reset();
+  if (!known) return;
   for (const ConstantFlow::Defined& earlier : flow_.defined()) {
     if (earlier.object != object->value || earlier.structure != first || earlier.place == point.expr.span) continue;
     if (Diagnostic* message = warn(Diag::ObjectTwice, point.expr.span,

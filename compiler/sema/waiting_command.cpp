@@ -82,7 +82,8 @@ void CommandCheck::check_mask(const Point& point, uint32_t first) {
 
 void CommandCheck::check_waiting(const Point& point) {
   const Opcode opcode = point.call.opcode;
-  const int32_t ms = opcode == Opcode::WaitK ? word(point, 0) : 0;
+  const KnownValue* value = opcode == Opcode::WaitH ? flow_.only_of(point.value) : nullptr;
+  const int32_t ms = opcode == Opcode::WaitK ? word(point, 0) : value != nullptr ? value->value : 0;
   if (ms > 0) {
     const std::span<const KnownValue> watchdog = flow_.values(ConstantFlow::kWatchdog);
     bool shorter = !watchdog.empty();
@@ -90,8 +91,10 @@ void CommandCheck::check_waiting(const Point& point) {
     if (shorter)
       if (Diagnostic* message = warn(Diag::WatchdogTooShort, point.expr.span,
                                      {fmt::format("{}", ms), fmt::format("{}", watchdog.front().value)});
-          message != nullptr && watchdog.front().assigned())
+          message != nullptr && watchdog.front().assigned()) {
         message->notes.push_back({watchdog.front().span, "it is started here"});
+        short_watchdogs_.insert(watchdog.front().span.begin.value);
+      }
   }
   const ProgramRoot& root = roots_.roots[point.root];
   if (!root.is_interrupt()) return;
@@ -109,6 +112,13 @@ void CommandCheck::check_waiting(const Point& point) {
     message->notes.push_back({{}, is_travel(opcode) ? "the forms with NOWAIT or NW only start the travel"
                                                     : "a task can do it: set a variable here that the task looks at"});
   }
+}
+
+void CommandCheck::operator()(const ConstantFlow::Unfed& unfed) {
+  const Span place = unfed.watchdog.front().span;
+  if (short_watchdogs_.contains(place.begin.value)) return;
+  Diagnostic* message = warn(Diag::WatchdogUnfed, place, {unfed.loop.begin.valid() ? "the endless loop behind it" : "the rest of the program"});
+  if (message != nullptr && unfed.loop.begin.valid()) message->notes.push_back({unfed.loop, "this loop"});
 }
 
 void CommandCheck::check_lacking(const Point& point) {

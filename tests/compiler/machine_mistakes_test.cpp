@@ -180,6 +180,86 @@ const MachineMistake kMachineMistakes[] = {
      "#include <const.h>\nmain() {\n_SetTask2(T2_START, Feed);\nwhile (1) {\n_WdOn(10); H1++;\n_Wait(100); } }\n"
      "Feed() { while (1) { _WdOn(10); _Wait(5); } }",
      {}},
+    // 60 + 60 of 100 ms.
+    {"WaitsTogetherLongerThanTheWatchdog",
+     "main() {\nwhile (1) {\n_WdOn(100); H1++;\nPause(); H2++;\nPause(); } }\nPause() {\n_Wait(60); }",
+     {"7 W0282"}},
+    {"WaitsTogetherAsLongAsTheWatchdog",
+     "main() {\nwhile (1) {\n_WdOn(100); H1++;\nPause(); H2++;\nPause(); } }\nPause() {\n_Wait(50); }",
+     {}},
+    {"WaitsThatAreComputed",
+     "long time, pause;\nmain() {\ntime = 50; pause = time * 2;\nwhile (1) {\n_WdOn(time); H1++;\n_Wait(pause); } }",
+     {"6 W0282"}},
+    {"WaitBehindALoopOfWaits",
+     "main() {\n_WdOn(100);\nwhile (!(H483 & 1)) _Wait(5);\n_Wait(200); _WdOff(); }",
+     {"4 W0282"}},
+    {"WatchdogThatNothingFeeds",
+     "long a;\nmain() {\n_WdOn(100);\nfor (;;) { a = a + 1; H1 = a; _Wait(20); } }",
+     {"3 W0295"}},
+    {"WatchdogOfAFunctionThatNothingFeeds",
+     "#include <const.h>\n#define FOREVER do {\n#define AGAIN } while (1)\nlong a;\nmain() {\nStart(); Work(); }\nStart() {\n"
+     "if (H483 & 1) _WdOn(500); else\n_WdOn(200); }\nWork() { FOREVER a = a + 1; H1 = a; AGAIN; }",
+     {"9 W0295"}},
+    {"WatchdogOfATaskThatNothingFeeds",
+     "#include <constb.h>\nmain() {\n_SetTask(T2_START, Third);\nwhile (1) H1++; }\nThird() {\n_WdOn(100);\nwhile (1) { H2++; } }",
+     {"6 W0295"},
+     "mdxb"},
+    {"WatchdogAtTheEndOfTheProgram", "main() {\nH1++;\n_WdOn(100);\n_Wait(50); H2++; }", {"3 W0295"}},
+    {"WatchdogThatAFunctionFeeds", "#include <const.h>\nmain() {\n_WdOn(100);\nwhile (1) { H1++; Feed(); } }\nFeed() { WdogTimer = 100; }", {}},
+    {"WatchdogThatIsFedAtTimes",
+     "main() {\n_WdOn(100);\nwhile (1) { H1++; if (H483 & 1) _WdOn(100); } }", {}},
+    {"WatchdogThatARoutineFeeds",
+     "#include <const.h>\nmain() {\nT0_Reload = 50; _SetInterrupt(SI_TIMER0, Tick); _WdOn(100);\nwhile (1) H1++; }\nTick() { _WdOn(100); }",
+     {}},
+    {"WatchdogOfALoopThatIsLeft",
+     "main() {\n_WdOn(100);\nwhile (1) { H1++; if (H483 & 1) break; }\n_WdOff();\nwhile (1) H2++; }", {}},
+    {"WatchdogOfAFunctionThatReturns",
+     "main() {\nwhile (1) { _WdOn(100); Look(); } }\nLook() { while (1) { H1++; if (H483 & 1) return; } }", {}},
+    {"WatchdogThatIsNeverReached", "main() {\nwhile (1) H1++;\n_WdOn(100);\nwhile (1) H2++; }", {"3 W0203"}},
+    {"WatchdogWrittenButNotStarted", "#include <const.h>\nmain() {\nWdogTimer = 100;\nwhile (1) { H1++; _Wait(200); } }", {}},
+    {"NoProcessData",
+     "#include <const.h>\nMOVLNK m; MLDATA d;\nmain() {\nm.Format = ML_FT_PAR; m.Service = ML_S_RD; m.BusType = ML_BT_SBUS; m.Address = 4; m.Index = 8470; m.DPointer = numof(d);\nAsk();\nShow(); }\n"
+     "Ask() { _MoviLink(m); H1 = m.Result; }\nShow() {\nH3 = d.ReadPar; H2 = d.PI1; }",
+     {"9 W0296"}},
+    {"FewerProcessData",
+     "#include <const.h>\nMOVLNK m; MLDATA d[2];\nmain() {\nm.Format = ML_FT_2; m.BusType = ML_BT_SBUS; m.Address = 4; m.Index = 8470; m.DPointer = numof(d);\n_MoviLink(m); H1 = m.Result;\n"
+     "H2 = d[0].PI2;\nH3 = d[0].PI3;\nH4 = d[0].ReadPar; }",
+     {"8 W0296", "7 W0296"}},
+    {"ProcessDataOfAnotherExchange",
+     "#include <const.h>\nMOVLNK m; MLDATA d;\nmain() {\nm.Service = ML_S_RD; m.BusType = ML_BT_SBUS; m.Address = 4; m.Index = 8470; m.DPointer = numof(d);\nwhile (1) {\n"
+     "if (H483 & 1) m.Format = ML_FT_PAR; else m.Format = ML_FT_1;\n_MoviLink(m); H1 = m.Result;\nH3 = d.ReadPar; H2 = d.PI1; } }",
+     {}},
+    {"ProcessDataOfAComputedFormat",
+     "#include <const.h>\nMOVLNK m; MLDATA d;\nmain() {\nm.Service = ML_S_RD; m.BusType = ML_BT_SBUS; m.Address = 4; m.Index = 8470; m.DPointer = numof(d);\nm.Format = H3;\n_MoviLink(m); H1 = m.Result; H2 = d.PI3; }",
+     {}},
+    {"WriteWithoutAValue",
+     "#include <const.h>\nMOVLNK m; MLDATA d;\nmain() {\nm.Format = ML_FT_PAR; m.Service = ML_S_WRV; m.BusType = ML_BT_SBUS; m.Address = 4; m.Index = 8470; m.DPointer = numof(d);\n_MoviLink(m); H1 = m.Result; }",
+     {"5 W0297"}},
+    {"WriteWithAValue",
+     "#include <const.h>\nMOVLNK m; MLDATA d;\nmain() {\nm.Format = ML_FT_PAR; m.Service = ML_S_WRV; m.BusType = ML_BT_SBUS; m.Address = 4; m.Index = 8470; m.DPointer = numof(d); d.WritePar = 0;\n_MoviLink(m); H1 = m.Result; }",
+     {}},
+    {"ObjectInAnEndlessLoop",
+     "#include <const.h>\nSCREC r; long a;\nmain() {\nr.ObjectNo = 1025; r.Format = 4; r.DPointer = numof(a);\nwhile (1) {\nH1 = a; Define(); _SBusCommOn(); } }\n"
+     "Define() {\n_SBusCommDef(SCD_REC, r); }",
+     {"8 W0274"}},
+    {"TelegramInAnEndlessLoop",
+     "#include <const.h>\nSCTRACYCL t; long a;\nmain() {\nt.ObjectNo = 1025; t.Format = 4; t.DPointer = numof(a);\n"
+     "while (1) { a = H483; _SBusCommDef(SCD_TRACYCL, t); _Wait(10); } }",
+     {}},
+    {"ObjectsOfALoop",
+     "#include <const.h>\nSCREC r; long a[3], i;\nmain() {\nr.Format = 4;\nfor (i = 0; i < 3; i++) {\nr.ObjectNo = 1025 + i; r.DPointer = numof(a[0]) + i;\n"
+     "_SBusCommDef(SCD_REC, r); }\n_SBusCommOn(); while (1) H1 = a[0]; }",
+     {}},
+    {"ExactPosition", "#include <const.h>\n#define GOAL 40960\nmain() {\n_GoAbs(GO_NOWAIT, GOAL);\nif (ActPos_Mot == GOAL) H1 = 1; }", {"5 W0298"}},
+    {"ExactPositionOfACopy",
+     "#include <const.h>\nlong now, goal;\nmain() {\ngoal = 40960 + H483; _GoAbs(GO_NOWAIT, goal);\nwhile (1) { Look();\nif (goal == now) H1 = 1; } }\n"
+     "Look() { now = ActPos_Ext - 100; }",
+     {"6 W0298"}},
+    {"ExactPositionEndsALoop", "#include <const.h>\nmain() {\n_GoAbs(GO_NOWAIT, 4096);\nwhile (ActPos_Mot != TargetPos && !(H483 & 1)) ; }", {"4 W0298"}},
+    {"PositionThatStands",
+     "#include <const.h>\nlong before;\nmain() {\nwhile (ActPos_Mot != before) { before = ActPos_Mot; _Wait(10); }\nif (ActPos_Mot == before) H1 = 1; }",
+     {}},
+    {"TurnsOfThePosition", "#include <const.h>\nmain() {\nif (ActPos_Mot / 4096 == 10 && ActPos_Mot >= 100) H1 = 1; }", {}},
     {"TravelOnAUnitWithoutPositioning",
      "#include <const.h>\nmain() {\n_Go0(GO0_C_W_ZP);\n_GoAbs(GO_WAIT, 100); }",
      {"3 W0283", "4 W0283"},
@@ -280,7 +360,7 @@ TEST(MachineMistakes, EveryCodeIsInATable) {
   for (const MachineMistake& row : kSlips)
     for (const std::string& one : row.told) known.insert(one.substr(one.find(' ') + 1));
   for (const DiagInfo& row : diagnostic_table()) {
-    if (row.code >= "W0262" && row.code <= "W0294") {
+    if (row.code >= "W0262" && row.code <= "W0298") {
       EXPECT_TRUE(known.contains(std::string(row.code))) << row.code;
     }
   }

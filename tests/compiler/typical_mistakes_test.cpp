@@ -588,16 +588,16 @@ main() { r.ObjectNo = 1025; r.Format = 4;
 main() { StatusWord = 0; })"},
     {"Go0nine", People::Expert, 2, "GO0_RESET", R"(#include <const.h>
 main() { _Go0(9); })"},
-    {"Wdonce", People::Expert, 3, nullptr, R"(long a;
+    {"Wdonce", People::Expert, 3, "again", R"(long a;
 main() {
   _WdOn(100);
   while (1) { a = a + 1; H1 = a; _Wait(20); } })"},
-    {"Pinofpd", People::Expert, 5, nullptr, R"(#include <const.h>
+    {"Pinofpd", People::Expert, 5, "process data", R"(#include <const.h>
 MOVLNK m; MLDATA d;
 main() { m.Address = 1; m.BusType = ML_BT_SBUS; m.Format = ML_FT_PAR; m.Service = ML_S_RD; m.Index = 8470; m.DPointer = numof(d);
   _MoviLink(m); if (m.Result == 0)
   H1 = d.PI1; })"},
-    {"Wrnovalue", People::Expert, 4, nullptr, R"(#include <const.h>
+    {"Wrnovalue", People::Expert, 4, "WritePar", R"(#include <const.h>
 MOVLNK m; MLDATA d;
 main() { m.Address = 1; m.BusType = ML_BT_SBUS; m.Format = ML_FT_PAR; m.Service = ML_S_WR; m.Index = 8470; m.DPointer = numof(d);
   _MoviLink(m); H1 = m.Result; H2 = d.ReadPar; })"},
@@ -618,7 +618,7 @@ OnX() { n = n + 1; H300 = n; }
 Other() { while (1) _Wait(5); })"},
     {"Bit32", People::Expert, 1, "31", R"(main() { _BitSet(H481, 32); })"},
     {"Beyondh511", People::Expert, 1, "H511", R"(main() { H512 = 5; })", "md60a"},
-    {"Definloop", People::Expert, 5, nullptr, R"(#include <const.h>
+    {"Definloop", People::Expert, 5, "endless loop", R"(#include <const.h>
 SCTRCYCL t; long a;
 main() { t.ObjectNo = 1025; t.CycleTime = 10; t.Format = 4; t.DPointer = numof(a);
   while (1) { a = H483;
@@ -630,7 +630,7 @@ main() { m.BusType = ML_BT_SBUS; m.Format = ML_FT_PAR; m.Service = ML_S_RD; m.DP
   while (1) {
     m.Address = 1; m.Index = 8318; _MoviLink(m); if (m.Result == 0) H1 = d.ReadPar; _Wait(10); } }
 Second() { while (1) { m.Address = 2; m.Index = 8318; _MoviLink(m); if (m.Result == 0) H2 = d.ReadPar; _Wait(10); } })"},
-    {"Exactpos", People::Expert, 3, nullptr, R"(#include <const.h>
+    {"Exactpos", People::Expert, 3, "in position", R"(#include <const.h>
 main() { _GoAbs(GO_NOWAIT, 40960); while (1)
   if (ActPos_Mot == 40960) H1 = 1; })"},
 };
