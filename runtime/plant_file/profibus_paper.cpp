@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <map>
 
+#include "stdlib/parameters.hpp"
+
 namespace ipos::runtime {
 namespace {
 
@@ -66,6 +68,33 @@ profibus::PlannedStation planned(const Slave& slave,
   return station;
 }
 
+// A MOVITRAC 31 stores what is written to it, unless P802 is OFF.
+bool stores(const StationConfig& station) {
+  if (!station.unit->has(stdlib::Trait::OwnParameterNumbers)) return false;
+  const stdlib::ParameterTable& table = stdlib::parameter_table(*station.unit);
+  const stdlib::Parameter* save = table.find("802");
+  for (const ParameterSetting& setting : station.parameters)
+    if (table.find(std::string_view(setting.parameter)) == save) return setting.value != 0;
+  return save->default_value != 0;
+}
+
+// Download block, universal write and the parameters; the other objects are the card's own (MOVITRAC 31 PROFIBUS, 4.2).
+bool is_stored(uint16_t object) { return object == 996 || object == 997 || object >= 1000; }
+
+// Cyclic writing needs P802 = OFF (MOVITRAC 31 PROFIBUS, 6): here what a master of FMS does again and again.
+void check_cyclic_writes(const PlantFile& file, const BusConfig& bus, const std::string& master, const FmsMasterConfig& fms,
+                         std::vector<std::string>& found) {
+  for (const FmsMasterConfig::Request& request : fms.requests) {
+    const bool writes = request.request.service == profibus::fms::Service::Write && is_stored(request.request.index);
+    if (request.every == 0 || !writes) continue;
+    for (const StationConfig& station : file.stations)
+      if (station.profibus.bus.bus == bus.name && station.profibus.address == fms.links[request.link].address && stores(station))
+        found.push_back(fmt::format("{} writes object {} of {} every {} ms, and each write goes to the EEPROM of {}: set its P802 (save "
+                                    "EEPROM) to OFF",
+                                    master, request.request.index, station.name, request.every / kMillisecond, station.name));
+  }
+}
+
 }  // namespace
 
 profibus::LinePlan profibus_paper(const PlantFile& file, const BusConfig& bus) {
@@ -104,11 +133,13 @@ std::vector<std::string> profibus_master_findings(const PlantFile& file, const B
   std::vector<std::string> found;
   const std::vector<Slave> slaves = slaves_of(file, bus.name);
   for (const ControlConfig& control : file.controls)
-    if (const auto* fms = control.as<FmsMasterConfig>(); fms != nullptr && fms->bus == bus.name)
+    if (const auto* fms = control.as<FmsMasterConfig>(); fms != nullptr && fms->bus == bus.name) {
+      check_cyclic_writes(file, bus, control.name, *fms, found);
       for (const FmsMasterConfig::Link& link : fms->links)
         for (const std::string& broken : profibus::fms::check_master_entry(link.entry, *link.connection))
           found.push_back(fmt::format("{}: its entry does not fit connection {} of slave {}: {}", control.name,
                                       link.connection->cref, link.address, broken));
+    }
   std::map<uint8_t, uint8_t> first;  // master of a slave's address
   for (const ProfibusMasterConfig* master : masters_of(file, bus.name))
     for (const profibus::SlavePlan& plan : master->slaves) {

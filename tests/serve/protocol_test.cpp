@@ -492,7 +492,7 @@ TEST_F(ServingDp, RowsByAddressesAndAccessPoints) {
 // Faults of a PROFIBUS line strike frames of one sender or of all.
 TEST_F(ServingDp, FaultsComeAndGo) {
   const Json bus = good({{"do", "plant"}})["plant"]["buses"][0];
-  EXPECT_EQ(bus["faults"], Json({"lost", "cut", "parity", "noise", "collision", "swap", "link", "card", "card_flash", "terminator", "length", "baud"}));
+  EXPECT_EQ(bus["faults"], Json({"lost", "cut", "parity", "noise", "collision", "swap", "link", "card", "card_flash", "diagnosis", "terminator", "length", "baud"}));
   EXPECT_EQ(
       bus["fault_rules"]["cut"],
       (Json{{"text", "cuts a frame short"}, {"station", "may"}, {"rate", true}, {"identifier", false}}));
@@ -543,7 +543,7 @@ TEST_F(DpAndSerial, WhatALineHasNotIsRefusedInWords) {
     return error(message);
   };
   EXPECT_EQ(refused({{"bus", "dp"}, {"kind", "short"}}),
-            "there is no fault 'short' of a PROFIBUS line; there are lost, cut, parity, noise, collision, swap, link, card, card_flash, "
+            "there is no fault 'short' of a PROFIBUS line; there are lost, cut, parity, noise, collision, swap, link, card, card_flash, diagnosis, "
             "terminator, length, baud");
   EXPECT_EQ(refused({{"bus", "dp"}, {"kind", "cut"}, {"identifier", 9}}),
             "'cut' strikes all frames of a sender: frames of a PROFIBUS line have no identifier");

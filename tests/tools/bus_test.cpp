@@ -6,6 +6,8 @@
 #include <regex>
 
 #include "tests/harness/contains.hpp"
+#include "tests/harness/proves.hpp"
+#include "tests/runtime/bus/profibus/gsd_reader.hpp"
 #include "tests/tools/command.hpp"
 
 namespace ipos::tests {
@@ -191,6 +193,7 @@ TEST(Bus, TheDissectorTakesObjectsApart) {
 
 // A master finds the device data by the name of the file, so that is the one without -o.
 TEST(Bus, TheDeviceDataOfAProfibusCard) {
+  PROVES("DP-ID-03");
   const TemporaryFolder folder;
   for (const auto& [card, unit, file] : {std::tuple{"ffp31", "", "SEW_3100.GSD"},
                                          {"size0", "", "SEW_3111.GSD"},
@@ -201,6 +204,9 @@ TEST(Bus, TheDeviceDataOfAProfibusCard) {
     EXPECT_EQ(run_ipos(words, folder.path()).exit_code, 0) << file;
     const std::string text = read_text(folder.path() / file);
     EXPECT_TRUE(text.starts_with("#Profibus_DP")) << file << ": " << text;
+    Gsd gsd = read_gsd(text);
+    EXPECT_TRUE(gsd.problems.empty()) << file << ": " << gsd.problems.front();
+    EXPECT_EQ("SEW_" + gsd.keys["Ident_Number"].substr(2) + ".GSD", file) << "one ident number a file";
     words.insert(words.end(), {"-o", "-"});
     EXPECT_EQ(run_ipos(words, folder.path()).out, text) << file;
     words.back() = "own.gsd";

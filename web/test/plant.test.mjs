@@ -330,7 +330,7 @@ test("faults: a PROFIBUS line offers its own, at a click, and ends them", { skip
   meet(
     async (page) => {
       const pane = page.getByRole("region", { name: "Line faults" });
-      assert.deepStrictEqual(await pane.getByLabel("Kind").locator("option").allTextContents(), ["lost", "cut", "parity", "noise", "collision", "swap", "link", "card", "card_flash", "terminator", "length", "baud"]);
+      assert.deepStrictEqual(await pane.getByLabel("Kind").locator("option").allTextContents(), ["lost", "cut", "parity", "noise", "collision", "swap", "link", "card", "card_flash", "diagnosis", "terminator", "length", "baud"]);
       assert.strictEqual(await pane.getByLabel("Identifier").count(), 0);
       assert.strictEqual(await page.getByRole("button", { name: "Cut pump from dp" }).count(), 0);
       await button(page, "Run").click();

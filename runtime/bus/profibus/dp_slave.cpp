@@ -46,7 +46,7 @@ void DpSlave::power_on(Time now, SlaveSettings settings) {
   cfg_data_ = {};
   for (const Configuration& row : configurations(settings.accepts.set))
     if (cfg_data_.empty() && row.words >= settings.accepts.least) cfg_data_ = row.cfg_data();
-  prm_fault_ = cfg_fault_ = not_supported_ = static_diagnosis_ = false;
+  prm_fault_ = cfg_fault_ = not_supported_ = static_diagnosis_ = was_parameterised_ = false;
   fault_told_.reset();
   image_.begin(0);
   fault_.power_on(now);
@@ -170,6 +170,7 @@ FdlFrame DpSlave::parameterise(Time now, const FdlFrame& request) {
 
 void DpSlave::take_prm(Time now, const FdlFrame& request, const PrmData& prm) {
   prm_fault_ = false;
+  was_parameterised_ = true;
   prm_ = prm;
   master_ = request.source;
   fault_told_.reset();

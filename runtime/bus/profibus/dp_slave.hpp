@@ -90,6 +90,7 @@ class DpSlave {
   void set_min_tsdr(uint8_t bits) { min_tsdr_ = bits; }
 
   SlaveState state() const { return state_; }
+  bool was_parameterised() const { return was_parameterised_; }  // by a master of DP, since the last power-on
   uint8_t address() const { return settings_.address; }
   uint8_t min_tsdr() const { return min_tsdr_; }
   const Configuration* configuration() const { return configuration_; }  // of the data exchange
@@ -128,6 +129,7 @@ class DpSlave {
   bool cfg_fault_ = false;
   bool not_supported_ = false;
   bool static_diagnosis_ = false;
+  bool was_parameterised_ = false;
   std::optional<uint8_t> fault_told_;  // that the master has fetched
   ProcessImage image_;
   UnitFault fault_;

@@ -53,6 +53,7 @@ void SlaveStation::on_reception(Time now, const Reception& reception) {
 // With a fault of its bus connection it does not answer (ours); without the link it does, and services fail.
 void SlaveStation::on_fault(Time now, OctetFaultKind kind, bool on) {
   if (kind == OctetFaultKind::Link && observer_ != nullptr) observer_->on_link(now, on);
+  if (kind == OctetFaultKind::Diagnosis) slave_.set_static_diagnosis(on);
   if (kind == OctetFaultKind::Card) hardware_ = on ? HardwareFault::GreenDark : HardwareFault::None;
   if (kind == OctetFaultKind::CardFlash) hardware_ = on ? HardwareFault::BothFlash : HardwareFault::None;
 }
@@ -82,7 +83,10 @@ CardState SlaveStation::card_state(Time now) const {
   state.initialising = option_.fms && now - powered_at_ < kInitialisation;
   state.address_valid = switches_.address() <= kLastStation;
   state.exchanging = slave_.state() == SlaveState::DataExchange;
-  if (option_.fms && switches_.fms()) state.used_as = UsedAs::Both;
+  if (option_.fms && !slave_.was_parameterised())
+    state.used_as = UsedAs::Fms;
+  else if (option_.fms && switches_.fms())
+    state.used_as = UsedAs::Both;
   return state;
 }
 

@@ -1,59 +1,21 @@
 // The GSD files, read by a small reader of the test that knows the keywords the standard makes mandatory.
 #include "runtime/bus/profibus/gsd.hpp"
 
-#include <map>
-#include <regex>
 #include <set>
 #include <sstream>
 #include <tuple>
 
 #include "runtime/bus/profibus/cfg_data.hpp"
+#include "tests/runtime/bus/profibus/gsd_reader.hpp"
 #include "tests/runtime/bus/profibus/octets.hpp"
 
 namespace ipos::tests {
 namespace {
 
-struct Gsd {
-  std::map<std::string, std::string> keys;
-  std::vector<std::pair<std::string, std::string>> modules;  // name, identifiers
-  std::vector<std::string> problems;
-};
-
-Gsd read(const std::string& text) {
-  Gsd gsd;
-  std::istringstream lines(text);
-  std::string line;
-  std::getline(lines, line);
-  if (line != "#Profibus_DP") gsd.problems.push_back("first line");
-  const std::regex module("Module=\"([^\"]*)\" ((0x[0-9A-F]{2},?)+)");
-  const std::regex key("([A-Za-z0-9_.]+)=(\"[^\"]{0,32}\"|[0-9]+|0x[0-9A-F]{4})");
-  std::smatch match;
-  bool open = false;
-  while (std::getline(lines, line)) {
-    if (line.size() > 80) gsd.problems.push_back("long: " + line);
-    for (const char c : line)
-      if (c < 0x20 || c > 0x7E || c == '@') gsd.problems.push_back("character: " + line);
-    if (line.empty() || line[0] == ';') continue;
-    if (line == "EndModule") {
-      if (!open) gsd.problems.push_back(line);
-      open = false;
-    } else if (std::regex_match(line, match, module)) {
-      if (open) gsd.problems.push_back(line);
-      open = true;
-      gsd.modules.emplace_back(match[1], match[2]);
-    } else if (!open && std::regex_match(line, match, key)) {
-      if (!gsd.keys.emplace(match[1], match[2]).second) gsd.problems.push_back("twice: " + line);
-    } else {
-      gsd.problems.push_back(line);
-    }
-  }
-  return gsd;
-}
-
 TEST(GsdFile, BothUnits) {
   PROVES("DP-ID-03");
   for (const OptionType& option : option_types()) {
-    Gsd gsd = read(gsd_text(option));
+    Gsd gsd = read_gsd(gsd_text(option));
     EXPECT_TRUE(gsd.problems.empty()) << gsd.problems.front();
     for (const char* mandatory : {"GSD_Revision",       "Vendor_Name",         "Model_Name",
                                   "Revision",           "Ident_Number",        "Protocol_Ident",
@@ -72,7 +34,7 @@ TEST(GsdFile, BothUnits) {
     EXPECT_EQ(gsd.keys.count("3M_supp"), 0U);
   }
   for (const OptionKind kind : {OptionKind::Ffp31, OptionKind::Size0}) {
-    Gsd gsd = read(gsd_text(option_type(kind)));
+    Gsd gsd = read_gsd(gsd_text(option_type(kind)));
     EXPECT_EQ(gsd.keys["Max_Input_Len"], "14");
     EXPECT_EQ(gsd.keys["Max_Data_Len"], "28");
     EXPECT_EQ(gsd.keys["Max_Module"], "2");
@@ -82,8 +44,8 @@ TEST(GsdFile, BothUnits) {
     EXPECT_EQ(modules,
               (std::set<std::string>{"0xF0", "0xF1", "0xF2", "0xF3,0xF0", "0xF3,0xF1", "0xF3,0xF2"}));
   }
-  Gsd combi = read(gsd_text(option_type(OptionKind::Ffp31))),
-      small = read(gsd_text(option_type(OptionKind::Size0)));
+  Gsd combi = read_gsd(gsd_text(option_type(OptionKind::Ffp31))),
+      small = read_gsd(gsd_text(option_type(OptionKind::Size0)));
   EXPECT_EQ(combi.keys["Ident_Number"], "0x3100");
   EXPECT_EQ(small.keys["Ident_Number"], "0x3111");
   EXPECT_EQ(combi.keys["FMS_supp"], "1");
@@ -101,7 +63,7 @@ TEST(GsdFile, CardsOfMovidriveAndGateway) {
   };
   for (const auto& [kind, words, ident, most] : {std::tuple(OptionKind::Dfp11, 3, "0x6000", "14"),
                                                  std::tuple(OptionKind::Dfp21, 10, "0x6003", "28")}) {
-    Gsd gsd = read(gsd_text(option_type(kind)));
+    Gsd gsd = read_gsd(gsd_text(option_type(kind)));
     std::set<std::string> expected, modules;
     for (int word = 1; word <= words; ++word) {
       expected.insert(identifiers(word));
@@ -113,7 +75,7 @@ TEST(GsdFile, CardsOfMovidriveAndGateway) {
     EXPECT_EQ(gsd.keys["Max_Input_Len"], most);
     EXPECT_EQ(gsd.keys["FMS_supp"], "0");
   }
-  Gsd gateway = read(gsd_text(option_type(OptionKind::Gateway)));
+  Gsd gateway = read_gsd(gsd_text(option_type(OptionKind::Gateway)));
   EXPECT_EQ(gateway.modules.size(), 16U);
   EXPECT_EQ(gateway.modules.back().second, "0xF3,0xF2,0xF2,0xF2,0xF2,0xF2,0xF2,0xF2,0xF2");
   EXPECT_EQ(gateway.keys["Max_Output_Len"], "56") << "8 + 8 x 6";

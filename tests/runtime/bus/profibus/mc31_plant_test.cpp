@@ -140,6 +140,7 @@ TEST(Mc31Plant, ExampleOfTheProcessData) {
 }
 
 TEST(Mc31Plant, CyclicWritingNeedsSaveEepromOff) {
+  PROVES("DP-PAR-18");
   const auto writes = [](const std::string& save) {
     std::string changes;
     for (int n = 1; n <= 10; ++n)
@@ -152,6 +153,25 @@ TEST(Mc31Plant, CyclicWritingNeedsSaveEepromOff) {
   };
   EXPECT_EQ(writes("1"), 10U);
   EXPECT_EQ(writes("0"), 0U);
+  // Who writes again and again is told before the memory is worn out.
+  const auto told = [](const std::string& parameters, const std::string& request) {
+    Mc31Plant bench(unit(parameters) + "[[control]]\nname = \"vis\"\nkind = \"fms\"\nprofibus = \"dp\"\n[[control.slave]]\naddress = 8\n" +
+                    "[[control.slave.request]]\nat = \"1s\"\n" + request);
+    bench.run(10 * kMillisecond);
+    for (const auto& entry : bench.plant->journal().entries())
+      if (entry.text.find("vis writes object ") != std::string::npos && entry.text.find("to the EEPROM of inv: set its P802") != std::string::npos)
+        return true;
+    return false;
+  };
+  const std::string block = "every = \"200ms\"\nwrite = 996\ndata = \"00 01 04 01 00 00 09 50\"\n";
+  const std::string write = "write = 1025\ndata = \"00 00 09 50\"\n", again = "every = \"200ms\"\n" + write;
+  EXPECT_TRUE(told("", again)) << "ON is the factory setting";
+  EXPECT_TRUE(told("P802 = \"ON\"\n", again));
+  EXPECT_TRUE(told("", block));
+  EXPECT_FALSE(told("P802 = \"OFF\"\n", again));
+  EXPECT_FALSE(told("", write)) << "once";
+  EXPECT_FALSE(told("", "every = \"200ms\"\nread = 1025\n"));
+  EXPECT_FALSE(told("", "every = \"200ms\"\nwrite = 990\ndata = \"00 06 05 DC 00 00\"\n")) << "process data";
 }
 
 // The master falls silent at 2 s; the watchdog is 200 ms.

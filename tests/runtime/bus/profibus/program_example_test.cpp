@@ -1,7 +1,9 @@
 // The program example of the manual's chapter 6, run by a small STEP 5 interpreter beside a plant with a MOVITRAC 31: as it
 // was meant, and with each misprint as it stands. The process image is that of the plant's DP master.
 #include <algorithm>
+#include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "tests/runtime/bus/profibus/dp_plant_rig.hpp"
@@ -277,49 +279,65 @@ TEST(ProgramExample, SlipOfBusy) {
   }
 }
 
+// While the two handshake bits differ the block ends at CHEK, and what is behind it runs when they are equal: two reads with the unit
+// show all four pairs.
 TEST(ProgramExample, TruthTableOfChek) {
   PROVES("DP-EX-14");
-  for (const bool received : {false, true})
-    for (const bool sent : {false, true}) {
-      Step5 program;
-      program.load("FB 1",
-                   "U M 184.6\nUN M 194.6\nO(\nUN M 184.6\nU M 194.6\n)\nBEB\nL KH 0001\nT MW 0\nBE\n");
-      program.set_bit("M", 184, 6, received);
-      program.set_bit("M", 194, 6, sent);
-      program.run("FB 1");
-      EXPECT_EQ(program.word("M", 0) == 1, received == sent);
+  Plc plc;
+  std::set<std::tuple<bool, bool, bool>> seen;  // received, sent, and whether the block went on
+  for (int reads = 0; reads < 2; ++reads) {
+    plc.program.set_bit("I", 4, 0, true);
+    for (bool done = false; !done && plc.unit.plant->now() < 5 * kSecond;) {
+      plc.cycle();
+      plc.program.set_bit("I", 4, 0, false);
+      done = !plc.program.bit("M", 1, 0);  // the request is cleared at the end of the block
+      seen.emplace(plc.program.bit("M", 184, 6), plc.program.bit("M", 194, 6), done);
     }
+  }
+  EXPECT_EQ(seen, (std::set<std::tuple<bool, bool, bool>>{{false, true, false}, {true, true, true}, {true, false, false}, {false, false, true}}));
 }
 
+// The listing of 3.6 has English operands, that of chapter 6 German ones: each in both tongues does the same with the unit.
 TEST(ProgramExample, EnglishAndGermanOperands) {
   PROVES("DP-EX-15");
-  Step5 program;
-  program.load("OB 1", R"(L IW 50
-L IW 52
-L IW 54
-L KH 0006
-T OW 50
-L KF +1500
-T OW 52
-L KH 0000
-T OW 54
-BE
-)");
-  program.load("OB 2", "L EW 50\nT AW 60\nU E 4.0\nUN M 1.0\nS A 4.0\nBE\n");
-  program.load("OB 3", "L IW 50\nT QW 60\nA I 4.0\nAN M 1.0\nS Q 4.0\nBE\n");
-  program.run("OB 1");
-  EXPECT_EQ(program.word("PQ", 50), 6);
-  EXPECT_EQ(program.word("PQ", 52), 0x05DC);
-  EXPECT_EQ(program.word("PQ", 54), 0);
-  for (const char* block : {"OB 2", "OB 3"}) {
-    program.set_word("PI", 50, 0x1234);
-    program.set_word("PQ", 60, 0);
-    program.set_bit("I", 4, 0, true);
-    program.set_bit("Q", 4, 0, false);
-    program.run(block);
-    EXPECT_EQ(program.word("PQ", 60), 0x1234) << block;
-    EXPECT_TRUE(program.bit("Q", 4, 0)) << block;
+  for (const auto& [in, out] : {std::pair("IW", "OW"), {"EW", "AW"}, {"IW", "QW"}}) {
+    std::string listing;
+    for (const char* at : {"50", "52", "54"}) listing += std::string("L ") + in + ' ' + at + "\nT MW " + at + '\n';
+    for (const auto& [value, at] : {std::pair("KH 0006", "50"), {"KF +1500", "52"}, {"KH 0000", "54"}})
+      listing += std::string("L ") + value + "\nT " + out + ' ' + at + '\n';
+    Step5 program;
+    program.load("OB 1", listing + "BE\n");
+    DpPlant unit(dp_line() + mc31_station() + dp_master(""));
+    for (int cycle = 0; cycle < 300; ++cycle) {
+      unit.run_on(10 * kMillisecond);
+      for (size_t word = 0; word < 3; ++word) program.set_word("PI", 50 + 2 * static_cast<int>(word), unit.input(word));
+      program.run("OB 1");
+      Octets octets;
+      for (int n = 50; n < 56; ++n) octets.push_back(program.areas["PQ"][n]);
+      unit.master().slave(0).set_outputs(octets);
+    }
+    EXPECT_EQ(unit.speed(), 300'000) << in;
+    EXPECT_EQ(program.word("M", 52), 0x05DC) << in;
   }
+  const auto english = [](std::string text) {
+    for (const auto& [german, word] : {std::pair("UN ", "AN "), {"U ", "A "}, {"SPB ", "JC "}, {"BEB", "BEC"}, {" E ", " I "}}) {
+      const std::string from = german;
+      for (size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += std::string(word).size())
+        if (from[0] == ' ' || at == 0 || text[at - 1] == '\n' || text[at - 1] == ' ') text.replace(at, from.size(), word);
+    }
+    return text;
+  };
+  Plc german, translated;
+  translated.program.load("OB 1", english(main_block({})));
+  translated.program.load("FB 101", english(function_block({}, "READ", "3100", "")));
+  for (Plc* plc : {&german, &translated}) {
+    plc->read();
+    plc->read();
+    EXPECT_EQ(plc->answered, "31 00 04 01 00 00 09 50");
+    EXPECT_EQ(plc->program.word("M", 190), 0x0950);
+  }
+  EXPECT_EQ(german.sent, translated.sent);
+  Step5 program;
   EXPECT_THROW(program.load("OB 4", "XYZ M 1.0"), std::runtime_error);
 }
 
