@@ -78,7 +78,7 @@ class IndexWindow {
 };
 
 struct DriveOptions {
-  // Option cards. All fitted, as no plant key names them yet (ours).
+  // Option cards; `cards` of the plant file. All fitted where it is left out (ours).
   bool drs = true;
   bool dio = true;
   bool aio = true;

@@ -135,6 +135,7 @@ void read_foreign_machines(PlantReader& reader, const toml::table& root);
 // Of a [[switch]] with part_at, all but its input and its active level.
 void read_barrier(PlantReader& reader, const toml::table& table, LightBarrier barrier);
 void read_profibus_card(PlantReader& reader, const toml::table& table, StationConfig& config);
+void read_cards(PlantReader& reader, const toml::table& table, StationConfig& config);
 void read_profibus_master(PlantReader& reader, const toml::table& table, ControlConfig& control);
 void read_fms_master(PlantReader& reader, const toml::table& table, ControlConfig& control);
 void read_controls(PlantReader& reader, const toml::table& root);

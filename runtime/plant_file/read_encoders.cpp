@@ -22,6 +22,8 @@ void read_encoder(PlantReader& reader, const toml::table& encoders, EncoderSocke
   if (config.unit != nullptr && !config.unit->has(needed_for(socket)))
     return reader.error(place, fmt::format("{} is of {}; unit {} has no such socket", key,
                                            stdlib::unit_names(needed_for(socket)), config.unit->name));
+  if (socket == EncoderSocket::X42 && !config.options.drs)
+    return reader.error(place, fmt::format("{} is of the card DRS, which cards does not name", key));
   reader.use_station(shaft, place);
   if (socket == EncoderSocket::X42) config.options.master_encoder = true;
   config.encoders.push_back({socket, std::move(shaft), place});

@@ -188,6 +188,7 @@ void read_station(PlantReader& reader, const toml::table& table) {
                      "profibus",
                      "profibus_address",
                      "fms_switch",
+                     "cards",
                      "nvram",
                      "parameters",
                      "inputs",
@@ -218,6 +219,7 @@ void read_station(PlantReader& reader, const toml::table& table) {
   read_clock(reader, table, config.options.clock_ppm);
   read_mains(reader, table, config.options.mains);
   read_logodrive(reader, table, config);
+  read_cards(reader, table, config);
   config.program = reader.text(table, "program", "", false);
   if (const toml::node* program = table.get("program")) {
     config.program_place = place_of(program->source());

@@ -10,6 +10,7 @@
 #include "stdlib/parameters.hpp"
 #include "stdlib/return_codes.hpp"
 #include "tests/harness/proves.hpp"
+#include "tests/stdlib/printed_quantities.hpp"
 
 namespace ipos::stdlib {
 namespace {
@@ -52,35 +53,7 @@ TEST(Units, PhysicalValues) {
 
 TEST(Units, QuantitiesAndUnits) {
   PROVES("PAR-24");
-  const char* printed[] = {"dimensionless",
-                           "length",
-                           "area",
-                           "volume",
-                           "time",
-                           "force",
-                           "pressure",
-                           "mass",
-                           "energy, work",
-                           "effective power",
-                           "apparent power",
-                           "rotational velocity",
-                           "angle",
-                           "speed",
-                           "volume rate of flow",
-                           "mass rate of flow",
-                           "torque",
-                           "temperature",
-                           "temperature difference",
-                           "entropy",
-                           "enthalpy",
-                           "electrical voltage",
-                           "electrical current",
-                           "electrical resistance",
-                           "ratio",
-                           "relative humidity",
-                           "absolute humidity",
-                           "relative change",
-                           "frequency"};
+  const auto& printed = tests::kPrintedQuantities;
   for (size_t i = 0; i < std::size(printed); ++i)
     EXPECT_EQ(quantity_name(static_cast<uint8_t>(i)), printed[i]);
   EXPECT_EQ(quantity_name(29), "");

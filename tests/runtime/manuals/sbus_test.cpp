@@ -26,12 +26,17 @@ struct Identifiers {
 
 TEST(SbusRows, IdentifiersOfEachAddress) {
   PROVES("SBUS-02", "SBUS-03", "SBUS-04", "SBUS-06", "M07-SBUS-03", "M07-SBUS-04");
-  const Identifiers printed[] = {{0, 3, 4, 5, 515, 516},    {1, 11, 12, 13, 523, 524},  {17, 139, 140, 141, 651, 652},
-                                 {33, 267, 268, 269, 779, 780}, {63, 507, 508, 509, 1019, 1020}};
+  const Identifiers printed[] = {{0, 3, 4, 5, 515, 516},
+                                 {1, 11, 12, 13, 523, 524},
+                                 {17, 139, 140, 141, 651, 652},
+                                 {33, 267, 268, 269, 779, 780},
+                                 {63, 507, 508, 509, 1019, 1020}};
   for (const char* unit : {"md60a", "mc07"})
     for (const Identifiers& row : printed) {
       const bool synchronous = std::string(unit) == "md60a";
-      Talk talk(can_bus() + on_sbus("u", unit, "P813 = " + std::to_string(row.address) + (synchronous ? "\nP817 = 2000000\n" : "\n")));
+      Talk talk(can_bus() + on_sbus("u", unit,
+                                    "P813 = " + std::to_string(row.address) +
+                                        (synchronous ? "\nP817 = 2000000\n" : "\n")));
       talk.pass(10 * kMs);
       const auto id_of_answer = [&](uint32_t id, const std::string& bytes) {
         const Texts answers = talk.ask(frame_text(id, bytes));
@@ -73,12 +78,14 @@ TEST(SbusRows, ReactsToItsOwnIdentifiersOnly) {
     std::set<uint32_t> mine;
     for (uint32_t id = 0; id < 2048; ++id) {
       const auto before = std::pair(talk.value("u", "PO2"), talk.value("u", "P302"));
-      const Texts to_words = talk.ask(frame_text(id, "00 06 " + word_text(static_cast<int>(id + 1)) + " 00 00"), 10 * kMs);
+      const Texts to_words =
+          talk.ask(frame_text(id, "00 06 " + word_text(static_cast<int>(id + 1)) + " 00 00"), 10 * kMs);
       const int64_t speed = 100'000 + 1000 * static_cast<int64_t>(id);
       const Texts to_write = talk.ask(frame_text(id, "32 00 21 45 " + value_text(speed)), 10 * kMs);
       const bool waits = id == 61 && before.first != talk.value("u", "PO2");
       EXPECT_FALSE(waits) << "synchronous words act at the sync telegram";
-      if (!to_words.empty() || !to_write.empty() || before != std::pair(talk.value("u", "PO2"), talk.value("u", "P302")))
+      if (!to_words.empty() || !to_write.empty() ||
+          before != std::pair(talk.value("u", "PO2"), talk.value("u", "P302")))
         mine.insert(id);
     }
     // The words that 61 brought are there since 2047 came.
@@ -101,7 +108,9 @@ TEST(SbusRows, ReactsToItsOwnIdentifiersOnly) {
 TEST(SbusRows, MovilinkKeepsBit10Clear) {
   PROVES("M07-SBUS-01", "M07-SBUS-02", "M07-SBUS-06");
   for (int address = 0; address < 64; ++address) {
-    Talk talk(can_bus() + on_sbus("u", "mc07", "P813 = " + std::to_string(address) + "\nP814 = " + std::to_string(address) + "\n"));
+    Talk talk(can_bus() +
+              on_sbus("u", "mc07",
+                      "P813 = " + std::to_string(address) + "\nP814 = " + std::to_string(address) + "\n"));
     talk.pass(5 * kMs);
     const auto at = static_cast<uint32_t>(8 * address);
     const Texts pi = talk.ask(frame_text(at + 3, "00 06 00 01 00 00"), 5 * kMs);
@@ -123,7 +132,8 @@ TEST(SbusRows, ReadAndRefusedWrite) {
   for (const int code : {0x39, 0x3A, 0x3B, 0x3C, 0x3D, 0x3E, 0x3F, 0x02, 0x12, 0x22, 0x03, 0x13, 0x23}) {
     const std::string low = word_text(code).substr(3);
     const std::string management = word_text(0xB0 | (code & 0x0F)).substr(3);
-    EXPECT_EQ(talk.ask("523 # " + low + " 00 21 16 00 00 03 E8"), Texts{"524 # " + management + " 00 21 16 05 05 00 00"});
+    EXPECT_EQ(talk.ask("523 # " + low + " 00 21 16 00 00 03 E8"),
+              Texts{"524 # " + management + " 00 21 16 05 05 00 00"});
   }
   EXPECT_EQ(talk.value("u", "P130"), 2000) << "nothing was written";
 }
@@ -174,7 +184,8 @@ TEST(SbusRows, ParameterChannel) {
 TEST(SbusRows, FramesOfTheSample) {
   PROVES("EX-14");
   Talk talk(can_bus() + unit_on("sbus = \"sbus\"\nprogram = \"P.IPC\"\n", "u", "md60a",
-                                "P813 = 1\nP100 = 10\nP101 = 3\nP872 = 5\nP873 = 9\nP874 = 9\nP875 = 9\n", kEnabled),
+                                "P813 = 1\nP100 = 10\nP101 = 3\nP872 = 5\nP873 = 9\nP874 = 9\nP875 = 9\n",
+                                kEnabled),
             "#include <const.h>\nSSPIDATA3 Pi;\nmain() { Pi.PI1 = 7; Pi.PI2 = 5011; Pi.PI3 = 0;"
             " while (1) { _SetSys(SS_PIDATA, Pi); } }\n");
   for (int n = 0; n < 300; ++n) talk.ask("11 # 00 06 13 88 3A 98", 10 * kMs);
@@ -271,10 +282,12 @@ TEST(SbusRows, TheSyncIdentifierMovesNothingElse) {
 TEST(SbusRows, SyncOfAMasterControl) {
   PROVES("SYNC-01", "SYNC-07");
   std::string plant = can_bus();
-  for (int n = 1; n <= 3; ++n) plant += on_sbus("u" + std::to_string(n), "md60a", "P813 = " + std::to_string(n) + "\n");
+  for (int n = 1; n <= 3; ++n)
+    plant += on_sbus("u" + std::to_string(n), "md60a", "P813 = " + std::to_string(n) + "\n");
   plant += "[[control]]\nname = \"plc\"\nsbus = \"sbus\"\nsync = 0\ncycle = \"5ms\"\n";
   for (int n = 1; n <= 3; ++n)
-    plant += "[[control.target]]\naddress = " + std::to_string(n) + "\npo = [6, " + std::to_string(100 * n) + ", 0]\n";
+    plant += "[[control.target]]\naddress = " + std::to_string(n) + "\npo = [6, " + std::to_string(100 * n) +
+             ", 0]\n";
   Talk talk(plant);
   talk.run_to(499 * kMs);
   int syncs = 0, outputs = 0;
@@ -289,7 +302,8 @@ TEST(SbusRows, SyncOfAMasterControl) {
       EXPECT_LE(frame.time % (5 * kMs), 4500 * kUs) << frame.text;
       ++outputs;
     } else {
-      EXPECT_LT(frame.time % (5 * kMs), kMs + 500 * kUs) << frame.text << ": PI words after the sync telegram";
+      EXPECT_LT(frame.time % (5 * kMs), kMs + 500 * kUs)
+          << frame.text << ": PI words after the sync telegram";
     }
   }
   EXPECT_EQ(syncs, 100) << "every 5 ms, and nobody answers it";
@@ -297,7 +311,8 @@ TEST(SbusRows, SyncOfAMasterControl) {
   for (int n = 1; n <= 3; ++n) EXPECT_EQ(talk.value(("u" + std::to_string(n)).c_str(), "PO2"), 100 * n);
   EXPECT_EQ(talk.told("synchronous PO telegram"), 0);
   // Outside of 1.5 to 4.5 ms of the cycle the journal warns.
-  for (const auto& [at, warned] : {std::pair{1200 * kUs, 1}, {1700 * kUs, 0}, {4100 * kUs, 0}, {4800 * kUs, 1}}) {
+  for (const auto& [at, warned] :
+       {std::pair{1200 * kUs, 1}, {1700 * kUs, 0}, {4100 * kUs, 0}, {4800 * kUs, 1}}) {
     Talk other(one());
     other.run_to(10 * kMs);
     other.send("0 #");
@@ -321,7 +336,8 @@ TEST(SbusRows, ThreeWordsEachWayAndOnlyOnRequest) {
   }
   EXPECT_EQ(talk.value("u", "PO1"), 6) << "high octet first";
   EXPECT_EQ(talk.value("u", "PO2"), 2000);
-  for (const char* other : {"267 #", "267 # 00 07", "267 # 00 07 00 01 00", "267 # 00 07 00 01 00 00 00", "267 # 00 07 00 01 00 00 00 00"})
+  for (const char* other : {"267 #", "267 # 00 07", "267 # 00 07 00 01 00", "267 # 00 07 00 01 00 00 00",
+                            "267 # 00 07 00 01 00 00 00 00"})
     EXPECT_EQ(talk.ask(other), kNothing) << other;
   EXPECT_EQ(talk.value("u", "PO1"), 6);
   const Texts response = talk.ask(frame_text(779, kRead8318));
@@ -341,9 +357,10 @@ TEST(SbusRows, SingleAndGroupNumbersMayCoincide) {
 
 // Program of a master with one MOVLNK, address and format from the test.
 std::string movlnk(int address, int format, int index = 8470, int service = 2) {
-  return "#include <const.h>\nMOVLNK Ml; MLDATA Mld; long lDone;\nmain()\n{\n Ml.BusType = 5; Ml.Address = " + std::to_string(address) +
-         "; Ml.Format = " + std::to_string(format) + "; Ml.Service = " + std::to_string(service) + "; Ml.Index = " +
-         std::to_string(index) + "; Ml.DPointer = numof(Mld); Ml.Result = 99;\n Mld.WritePar = 2500; Mld.PO1 = 6; Mld.PO2 = -3750;\n"
+  return "#include <const.h>\nMOVLNK Ml; MLDATA Mld; long lDone;\nmain()\n{\n Ml.BusType = 5; Ml.Address = " +
+         std::to_string(address) + "; Ml.Format = " + std::to_string(format) +
+         "; Ml.Service = " + std::to_string(service) + "; Ml.Index = " + std::to_string(index) +
+         "; Ml.DPointer = numof(Mld); Ml.Result = 99;\n Mld.WritePar = 2500; Mld.PO1 = 6; Mld.PO2 = -3750;\n"
          " _MoviLink(Ml);\n lDone = 1;\n while (1) {}\n}\n";
 }
 struct Movlnk {
@@ -387,8 +404,10 @@ TEST(SbusRows, FormatsOfMovlnk) {
   EXPECT_EQ(parameter.frames, (Texts{"523 # 32 00 21 16 00 00 09 C4", "524 # 32 00 21 16 00 00 09 C4"}));
   EXPECT_EQ(parameter.talk.value("u", "P130"), 2500);
   // PI words come back with their sign (ours).
-  Talk talk(can_bus() + unit_on("sbus = \"sbus\"\nprogram = \"P.IPC\"\n", "m", "md60a", "P813 = 0\n"), movlnk(1, 5));
-  for (int ms = 0; ms < 20 && talk.answers(kMs).empty(); ++ms) {}
+  Talk talk(can_bus() + unit_on("sbus = \"sbus\"\nprogram = \"P.IPC\"\n", "m", "md60a", "P813 = 0\n"),
+            movlnk(1, 5));
+  for (int ms = 0; ms < 20 && talk.answers(kMs).empty(); ++ms) {
+  }
   talk.send("12 # 02 02 F1 5A 00 01");
   talk.pass(10 * kMs);
   EXPECT_EQ(talk.value("m", "Mld.PI1"), 0x0202);
@@ -398,7 +417,8 @@ TEST(SbusRows, FormatsOfMovlnk) {
 
 TEST(SbusRows, MasterOfSetpointsSendsGroupTelegrams) {
   PROVES("MS-02");
-  Talk talk(can_bus() + on_sbus("m", "md60a", "P813 = 1\nP814 = 2\nP750 = 2\n") + on_sbus("s", "md60a", "P813 = 2\nP814 = 2\nP100 = 8\n"));
+  Talk talk(can_bus() + on_sbus("m", "md60a", "P813 = 1\nP814 = 2\nP750 = 2\n") +
+            on_sbus("s", "md60a", "P813 = 2\nP814 = 2\nP100 = 8\n"));
   talk.run_to(100 * kMs);
   const std::vector<HeardFrame> frames = talk.heard();
   EXPECT_GE(frames.size(), 95U);
@@ -412,7 +432,8 @@ TEST(SbusRows, TwoSendersOfOneIdentifierCollide) {
   PROVES("DIAG-04");
   const std::string program =
       "#include <const.h>\nSCTRCYCL Tr; long lData;\nmain() { Tr.ObjectNo = 1024; Tr.CycleTime = 10;"
-      " Tr.Offset = 0; Tr.Format = 4; Tr.DPointer = numof(lData); _SBusCommDef(SCD_TRCYCL, Tr); _SBusCommOn(); while (1) { lData = H10; } }\n";
+      " Tr.Offset = 0; Tr.Format = 4; Tr.DPointer = numof(lData); _SBusCommDef(SCD_TRCYCL, Tr); "
+      "_SBusCommOn(); while (1) { lData = H10; } }\n";
   Talk talk(can_bus() + unit_on("sbus = \"sbus\"\nprogram = \"P.IPC\"\n", "a", "md60a", "P813 = 1\n") +
                 unit_on("sbus = \"sbus\"\nprogram = \"P.IPC\"\n", "b", "md60a", "P813 = 2\n"),
             program);

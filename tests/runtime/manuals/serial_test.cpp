@@ -27,7 +27,8 @@ std::string hex_of(int value) { return word_text(value).substr(3); }
 // What the units of a line have as process output words.
 std::string words(const Talk& talk, const char* unit = "u") {
   std::string text;
-  for (const char* name : {"PO1", "PO2", "PO3"}) text += (text.empty() ? "" : " ") + word_text(static_cast<int>(talk.value(unit, name)));
+  for (const char* name : {"PO1", "PO2", "PO3"})
+    text += (text.empty() ? "" : " ") + word_text(static_cast<int>(talk.value(unit, name)));
   return text;
 }
 
@@ -42,7 +43,8 @@ TEST(SerialRows, TheWorkedExample) {
     EXPECT_EQ(talk.serial_ask_raw(kExample), Texts{"1D 01 05 04 07 3A 98 00 00 B8"}) << unit;
     // At 1000 rpm speed is read as 000F 4240h.
     for (int n = 0; n < 60; ++n) talk.serial_ask("02 01 05 00 06 13 88 00 00");
-    EXPECT_EQ(talk.serial_ask_raw("02 01 86 31 00 20 7E 00 00 00 00 EA"), Texts{"1D 01 86 31 00 20 7E 00 0F 42 40 F8"});
+    EXPECT_EQ(talk.serial_ask_raw("02 01 86 31 00 20 7E 00 00 00 00 EA"),
+              Texts{"1D 01 86 31 00 20 7E 00 0F 42 40 F8"});
   }
 }
 
@@ -50,7 +52,8 @@ TEST(SerialRows, ReadAt1000Rpm) {
   PROVES("EX-09");
   Talk talk(serial_bus() + running("md60a", 1));
   for (int n = 0; n < 60; ++n) talk.serial_ask("02 01 05 00 06 13 88 00 00");
-  EXPECT_EQ(talk.serial_ask_raw("02 01 86 31 00 20 7E 00 00 00 00 EA"), Texts{"1D 01 86 31 00 20 7E 00 0F 42 40 F8"});
+  EXPECT_EQ(talk.serial_ask_raw("02 01 86 31 00 20 7E 00 00 00 00 EA"),
+            Texts{"1D 01 86 31 00 20 7E 00 0F 42 40 F8"});
 }
 
 // Any other octet in place of one makes it void.
@@ -71,9 +74,12 @@ TEST(SerialRows, EveryChangedOctetIsFound) {
 // has the outputs DO10 to DO17: two of them are set to what holds.
 TEST(SerialRows, SampleOfControlAndResponse) {
   PROVES("EX-03", "EX-04");
-  Talk talk(serial_bus() +
-            on_line("u", "md60a", numbered(1, "P100 = 2\nP101 = 1\nP871 = 11\nP872 = 8\nP874 = 8\nP875 = 7\nP631 = 2\nP632 = 2\n"),
-                    "[station.inputs]\nDI00 = 1\nDI01 = 1\n"));
+  Talk talk(
+      serial_bus() +
+      on_line(
+          "u", "md60a",
+          numbered(1, "P100 = 2\nP101 = 1\nP871 = 11\nP872 = 8\nP874 = 8\nP875 = 7\nP631 = 2\nP632 = 2\n"),
+          "[station.inputs]\nDI00 = 1\nDI01 = 1\n"));
   EXPECT_EQ(talk.serial_ask_raw("02 01 85 00 06 20 00 0B B8 13"), Texts{"1D 01 85 02 06 00 00 06 06 9D"});
   EXPECT_EQ(words(talk), "00 06 20 00 0B B8");
 }
@@ -94,7 +100,8 @@ TEST(SerialRows, HighOctetFirst) {
 struct TypeRow {
   int type, pdu, length;
 };
-constexpr TypeRow kTypes[] = {{0, 10, 14}, {1, 2, 6}, {2, 12, 16}, {3, 4, 8}, {4, 14, 18}, {5, 6, 10}, {6, 8, 12}};
+constexpr TypeRow kTypes[] = {{0, 10, 14}, {1, 2, 6},  {2, 12, 16}, {3, 4, 8},
+                              {4, 14, 18}, {5, 6, 10}, {6, 8, 12}};
 
 std::string request(int address, int type, int pdu) {
   std::string text = "02 " + hex_of(address) + " " + hex_of(type);
@@ -147,7 +154,8 @@ TEST(SerialRows, EveryAddress) {
 
 TEST(SerialRows, EachAnswersItsOwnAddress) {
   PROVES("RS485-08", "MDB-RS485-16", "MDB-RS485-18");
-  Talk talk(serial_bus() + on_line("a", "mdxb", numbered(1)) + on_line("b", "md60a", numbered(3)) + on_line("c", "mdxb", numbered(12)));
+  Talk talk(serial_bus() + on_line("a", "mdxb", numbered(1)) + on_line("b", "md60a", numbered(3)) +
+            on_line("c", "mdxb", numbered(12)));
   for (const auto& [address, unit] : {std::pair{12, "c"}, {3, "b"}, {1, "a"}}) {
     const Texts answers = talk.serial_ask("02 " + hex_of(address) + " 05 00 06 3A 98 01 F4");
     ASSERT_EQ(answers.size(), 1U);
@@ -162,7 +170,8 @@ TEST(SerialRows, Groups) {
   for (const char* type : {"md60a", "mdxb"}) {
     const char* names[] = {"a", "b", "c", "d", "e", "f"};
     std::string plant = serial_bus();
-    for (int n = 0; n < 6; ++n) plant += on_line(names[n], type, numbered(n + 1, n < 4 ? "P811 = 101\n" : "P811 = 102\n"));
+    for (int n = 0; n < 6; ++n)
+      plant += on_line(names[n], type, numbered(n + 1, n < 4 ? "P811 = 101\n" : "P811 = 102\n"));
     Talk talk(plant);
     const auto p130 = [&](int n) { return talk.value(names[n], "P130"); };
     EXPECT_EQ(talk.serial_ask("02 65 86 32 00 21 16 00 00 09 C4"), kNothing);
@@ -170,7 +179,8 @@ TEST(SerialRows, Groups) {
     EXPECT_EQ(talk.serial_ask("02 66 06 72 00 21 16 00 00 0B B8"), kNothing);
     for (int n = 0; n < 6; ++n) EXPECT_EQ(p130(n), n < 4 ? 2500 : 3000);
     EXPECT_EQ(talk.serial_ask("02 65 05 00 06 07 D0 00 00"), kNothing);
-    for (int n = 0; n < 6; ++n) EXPECT_EQ(words(talk, names[n]), n < 4 ? "00 06 07 D0 00 00" : "00 00 00 00 00 00");
+    for (int n = 0; n < 6; ++n)
+      EXPECT_EQ(words(talk, names[n]), n < 4 ? "00 06 07 D0 00 00" : "00 00 00 00 00 00");
     // A read gives nothing, a refused write neither; the journal has both.
     EXPECT_EQ(talk.serial_ask("02 65 86 31 00 20 7E 00 00 00 00"), kNothing);
     EXPECT_EQ(talk.serial_ask("02 65 86 32 00 20 7E 00 00 00 00"), kNothing);
@@ -194,7 +204,8 @@ TEST(SerialRows, UniversalAddress) {
   const Texts answer = only.serial_ask("02 FE 05 00 06 3A 98 01 F4");
   ASSERT_EQ(answer.size(), 1U);
   EXPECT_EQ(answer[0].substr(0, 8), "1D FE 05") << "the address of the request (ours)";
-  Talk two(serial_bus() + on_line("u", "mdxb", numbered(1, "P873 = 0\n")) + on_line("v", "mdxb", numbered(2)));
+  Talk two(serial_bus() + on_line("u", "mdxb", numbered(1, "P873 = 0\n")) +
+           on_line("v", "mdxb", numbered(2)));
   two.serial_ask_raw(with_check("02 FE 05 00 06 3A 98 01 F4"));
   EXPECT_GE(two.told("same time") + two.told("collision"), 1) << "their answers collide";
   for (size_t n = 1; n < two.telegrams().size(); ++n) EXPECT_FALSE(two.telegrams()[n].valid);
@@ -202,7 +213,8 @@ TEST(SerialRows, UniversalAddress) {
 
 TEST(SerialRows, BroadcastReachesAll) {
   PROVES("RS485-13");
-  Talk talk(serial_bus() + on_line("a", "md60a", numbered(1)) + on_line("b", "mdxb", numbered(2)) + on_line("c", "mc07", numbered(3)));
+  Talk talk(serial_bus() + on_line("a", "md60a", numbered(1)) + on_line("b", "mdxb", numbered(2)) +
+            on_line("c", "mc07", numbered(3)));
   EXPECT_EQ(talk.serial_ask("02 FF 05 00 06 3A 98 01 F4"), kNothing);
   for (const char* name : {"a", "b", "c"}) EXPECT_EQ(words(talk, name), "00 06 3A 98 01 F4");
 }
@@ -213,7 +225,8 @@ TEST(SerialRows, StartPause) {
   for (const bool fast : {false, true})
     for (const auto& [pause, answered] :
          {std::pair{3300, false}, {3420, false}, {3441, true}, {3500, true}}) {
-      Talk talk(fast ? serial_bus("line", "baud = 57600\n") + unit_on("rs485_xt = \"line\"\n", "u", "mdxb", numbered(1))
+      Talk talk(fast ? serial_bus("line", "baud = 57600\n") +
+                           unit_on("rs485_xt = \"line\"\n", "u", "mdxb", numbered(1))
                      : one());
       talk.pass(10 * kMs);
       const std::string before = with_check("1D 02 05 00 00 00 00 00 00");
@@ -240,7 +253,8 @@ TEST(SerialRows, StartPause) {
 }
 
 // An octet more is sent `gap` after the end of the one before it.
-void feed_with_gap(Talk& talk, const std::string& text, size_t at, int64_t gap, int64_t character = kCharacter) {
+void feed_with_gap(Talk& talk, const std::string& text, size_t at, int64_t gap,
+                   int64_t character = kCharacter) {
   talk.pass(10 * kMs);
   talk.serial_heard();
   const int64_t start = talk.now();
@@ -254,8 +268,15 @@ TEST(SerialRows, CharacterGap) {
   PROVES("RS485-20", "MDB-RS485-10", "MDB-RS485-11", "MDB-RS485-35");
   for (const bool fast : {false, true})
     for (size_t at = 1; at < 10; ++at)
-      for (const auto& [gap, answered] : {std::pair{3400, true}, {3420, true}, {3432, false}, {3440, false}, {3500, false}, {5000, false}}) {
-        Talk talk(fast ? serial_bus("line", "baud = 57600\n") + unit_on("rs485_xt = \"line\"\n", "u", "mdxb", numbered(1)) : one());
+      for (const auto& [gap, answered] : {std::pair{3400, true},
+                                          {3420, true},
+                                          {3432, false},
+                                          {3440, false},
+                                          {3500, false},
+                                          {5000, false}}) {
+        Talk talk(fast ? serial_bus("line", "baud = 57600\n") +
+                             unit_on("rs485_xt = \"line\"\n", "u", "mdxb", numbered(1))
+                       : one());
         feed_with_gap(talk, kExample, at, gap * kUs, fast ? 11'000'000'000 / 57'600 : kCharacter);
         EXPECT_EQ(words(talk), answered ? "00 06 3A 98 01 F4" : "00 00 00 00 00 00") << at << ' ' << gap;
         EXPECT_EQ(talk.told("character delay exceeded") > 0, !answered) << at << ' ' << gap;
@@ -335,7 +356,8 @@ TEST(SerialRows, AcyclicTypesAlwaysRun) {
   Talk talk(one());
   for (const int value : {1000, 1100, 1200}) {
     talk.set("u", "P130", value);
-    EXPECT_EQ(talk.serial_ask("02 01 86 31 00 21 16 00 00 00 00"), Texts{"1D 01 86 31 00 21 16 " + value_text(value)});
+    EXPECT_EQ(talk.serial_ask("02 01 86 31 00 21 16 00 00 00 00"),
+              Texts{"1D 01 86 31 00 21 16 " + value_text(value)});
   }
   EXPECT_EQ(talk.serial_ask("02 01 86 71 00 21 16 FF FF FF FF"), Texts{"1D 01 86 71 00 21 16 00 00 04 B0"});
 }
@@ -353,7 +375,8 @@ TEST(SerialRows, TimesOnTheWire) {
       const std::string text = request(1, type, characters - 4);
       EXPECT_EQ(talk.serial_ask(text, line).size(), 1U);
       for (const HeardTelegram& heard : talk.telegrams())
-        EXPECT_NEAR(static_cast<double>(heard.end - heard.start) / 1000, line == std::string("x") ? fast : slow, 5);
+        EXPECT_NEAR(static_cast<double>(heard.end - heard.start) / 1000,
+                    line == std::string("x") ? fast : slow, 5);
     }
 }
 
@@ -366,7 +389,8 @@ TEST(SerialRows, DisturbedBitsAreFound) {
   for (const char* kind : {"parity", "noise"})
     for (int seed = 1; seed <= 5; ++seed) {
       Talk talk(one() + fault(kind, "rate = 1000\nseed = " + std::to_string(seed) + "\nuntil = \"4s\"\n"));
-      for (int n = 0; n < 40; ++n) EXPECT_EQ(talk.serial_ask_raw(kExample), kNothing) << kind << ' ' << seed << ' ' << n;
+      for (int n = 0; n < 40; ++n)
+        EXPECT_EQ(talk.serial_ask_raw(kExample), kNothing) << kind << ' ' << seed << ' ' << n;
       EXPECT_EQ(words(talk), "00 00 00 00 00 00");
       talk.run_to(4000 * kMs);
       EXPECT_EQ(talk.serial_ask_raw(kExample).size(), 1U) << "the next one is heard";
@@ -377,7 +401,8 @@ TEST(SerialRows, DisturbedBitsAreFound) {
 // bit in the first octet.
 TEST(SerialRows, SixErrorsAndNoAnswer) {
   PROVES("MDB-RS485-30", "RS485-19");
-  const auto check = [](const std::string& planted, const std::string& words_told, const std::string& text, size_t gap_at = 0) {
+  const auto check = [](const std::string& planted, const std::string& words_told, const std::string& text,
+                        size_t gap_at = 0) {
     Talk talk(one("mdxb") + planted);
     EXPECT_EQ(talk.serial_ask("02 01 05 00 02 11 11 22 22").size(), 1U);
     talk.run_to(490 * kMs);
@@ -392,7 +417,8 @@ TEST(SerialRows, SixErrorsAndNoAnswer) {
     EXPECT_EQ(words(talk), "00 06 3A 98 01 F4");
   };
   check(fault("parity", "frame = 3\n"), "parity error", kExample);
-  check(fault("baud", "station = \"u\"\nfrom = \"400ms\"\nuntil = \"900ms\"\n"), "character frame error", kExample);
+  check(fault("baud", "station = \"u\"\nfrom = \"400ms\"\nuntil = \"900ms\"\n"), "character frame error",
+        kExample);
   check("", "character delay exceeded", kExample, 5);
   check("", "request to 2 is not for this unit", with_check("02 02 05 00 06 3A 98 01 F4"));
   check("", "PDU type incorrect", with_check("02 01 07 00 06 3A 98 01 F4"));
@@ -402,10 +428,14 @@ TEST(SerialRows, SixErrorsAndNoAnswer) {
 TEST(SerialRows, ResponsesIn50Milliseconds) {
   PROVES("TIME-08", "MDB-RS485-12");
   const std::string program =
-      "#include <constb.h>\nMOVLNK Ml; MLDATA Mld; long lDone;\nmain()\n{\n Ml.BusType = 2; Ml.Address = 1; Ml.Format = 134;"
-      " Ml.Service = 1; Ml.Index = 8318; Ml.DPointer = numof(Mld); Ml.Result = 99;\n _MoviLink(Ml);\n lDone = 1;\n while (1) {}\n}\n";
-  for (const auto& [delay, good] : {std::pair{49'000, true}, {49'900, true}, {50'100, false}, {51'000, false}}) {
-    Talk talk(serial_bus() + unit_on("rs485 = \"line\"\nprogram = \"P.IPC\"\n", "m", "mdxb", numbered(9)), program);
+      "#include <constb.h>\nMOVLNK Ml; MLDATA Mld; long lDone;\nmain()\n{\n Ml.BusType = 2; Ml.Address = 1; "
+      "Ml.Format = 134;"
+      " Ml.Service = 1; Ml.Index = 8318; Ml.DPointer = numof(Mld); Ml.Result = 99;\n _MoviLink(Ml);\n lDone "
+      "= 1;\n while (1) {}\n}\n";
+  for (const auto& [delay, good] :
+       {std::pair{49'000, true}, {49'900, true}, {50'100, false}, {51'000, false}}) {
+    Talk talk(serial_bus() + unit_on("rs485 = \"line\"\nprogram = \"P.IPC\"\n", "m", "mdxb", numbered(9)),
+              program);
     Texts requests;
     for (int n = 0; n < 2; ++n) {
       std::vector<HeardTelegram> heard;
@@ -431,9 +461,10 @@ TEST(SerialRows, ResponsesIn50Milliseconds) {
 }
 
 std::string movlnk(int address, int format, int value = 2500) {
-  return "#include <const.h>\nMOVLNK Ml; MLDATA Mld; long lDone;\nmain()\n{\n Ml.BusType = 2; Ml.Address = " + std::to_string(address) +
-         "; Ml.Format = " + std::to_string(format) +
-         "; Ml.Service = 2; Ml.Index = 8470; Ml.DPointer = numof(Mld); Ml.Result = 99;\n Mld.WritePar = " + std::to_string(value) +
+  return "#include <const.h>\nMOVLNK Ml; MLDATA Mld; long lDone;\nmain()\n{\n Ml.BusType = 2; Ml.Address = " +
+         std::to_string(address) + "; Ml.Format = " + std::to_string(format) +
+         "; Ml.Service = 2; Ml.Index = 8470; Ml.DPointer = numof(Mld); Ml.Result = 99;\n Mld.WritePar = " +
+         std::to_string(value) +
          "; Mld.PO1 = 6; Mld.PO2 = 5; Mld.PO3 = 4;\n _MoviLink(Ml);\n lDone = 1;\n while (1) {}\n}\n";
 }
 
@@ -446,7 +477,8 @@ TEST(SerialRows, AddressesOfMovlnk) {
   for (const int format : {6, 134})
     for (const auto& row : rows) {
       Talk talk(serial_bus() + unit_on("rs485 = \"line\"\nprogram = \"P.IPC\"\n", "m", "md60a", numbered(9)) +
-                    on_line("a", "md60a", numbered(1, "P811 = 101\n")) + on_line("b", "md60a", numbered(2, "P811 = 101\n")) +
+                    on_line("a", "md60a", numbered(1, "P811 = 101\n")) +
+                    on_line("b", "md60a", numbered(2, "P811 = 101\n")) +
                     on_line("c", "md60a", numbered(99, "P811 = 199\n")),
                 movlnk(row.address, format));
       talk.pass(500 * kMs);
@@ -456,7 +488,8 @@ TEST(SerialRows, AddressesOfMovlnk) {
       EXPECT_EQ(reached, row.reached) << row.address << ' ' << format;
     }
   for (const int wrong : {200, 252, 256, -1}) {
-    Talk talk(serial_bus() + unit_on("rs485 = \"line\"\nprogram = \"P.IPC\"\n", "m", "md60a", numbered(9)) + on_line("a", "md60a", numbered(1)),
+    Talk talk(serial_bus() + unit_on("rs485 = \"line\"\nprogram = \"P.IPC\"\n", "m", "md60a", numbered(9)) +
+                  on_line("a", "md60a", numbered(1)),
               movlnk(wrong, 6));
     talk.pass(500 * kMs);
     EXPECT_NE(talk.value("m", "Ml.Result"), 0) << wrong;
@@ -468,7 +501,8 @@ TEST(SerialRows, FormatsOfMovlnk) {
   PROVES("MOVLNK-06");
   for (const int acyclic : {0, 128})
     for (int format = 0; format <= 6; ++format) {
-      Talk talk(serial_bus() + unit_on("rs485 = \"line\"\nprogram = \"P.IPC\"\n", "m", "md60a", numbered(9)) + on_line("a", "md60a", numbered(1)),
+      Talk talk(serial_bus() + unit_on("rs485 = \"line\"\nprogram = \"P.IPC\"\n", "m", "md60a", numbered(9)) +
+                    on_line("a", "md60a", numbered(1)),
                 movlnk(1, format + acyclic));
       talk.pass(500 * kMs);
       EXPECT_EQ(talk.value("m", "Ml.Result"), 0) << format;

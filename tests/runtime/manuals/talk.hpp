@@ -48,7 +48,8 @@ inline std::string word_text(int word) {
   return text;
 }
 inline std::string value_text(int64_t value) {
-  return word_text(static_cast<int>(value >> 16 & 0xFFFF)) + " " + word_text(static_cast<int>(value & 0xFFFF));
+  return word_text(static_cast<int>(value >> 16 & 0xFFFF)) + " " +
+         word_text(static_cast<int>(value & 0xFFFF));
 }
 
 // Parts of a plant file. `keys` are lines of the [[station]], `parameters` those of its [station.parameters].
@@ -60,7 +61,8 @@ inline std::string serial_bus(const std::string& name = "line", const std::strin
 }
 inline std::string unit_on(const std::string& keys, const std::string& name, const std::string& unit,
                            const std::string& parameters, const std::string& more = "") {
-  return "[[station]]\nname = \"" + name + "\"\nunit = \"" + unit + "\"\n" + keys + "[station.parameters]\n" + parameters + more;
+  return "[[station]]\nname = \"" + name + "\"\nunit = \"" + unit + "\"\n" + keys + "[station.parameters]\n" +
+         parameters + more;
 }
 inline std::string on_sbus(const std::string& name, const std::string& unit, const std::string& parameters,
                            const std::string& more = "") {
@@ -86,14 +88,18 @@ struct HeardTelegram {
 
 class Talk {
  public:
-  explicit Talk(const std::string& plant, const std::string& program = "") : opened_(plant, program, unrecorded()) {}
+  // `commands_a_ms` of every task; 0: as the unit has it.
+  explicit Talk(const std::string& plant, const std::string& program = "", uint32_t commands_a_ms = 0)
+      : opened_(plant, program, unrecorded(commands_a_ms)) {}
 
   int64_t now() const {
     int64_t time = 0;
     EXPECT_EQ(ipos_plant_time(plant(), &time), IPOS_PLANT_OK);
     return time;
   }
-  void run_to(int64_t time) const { EXPECT_EQ(ipos_plant_run(plant(), time), IPOS_PLANT_OK) << opened_.message(); }
+  void run_to(int64_t time) const {
+    EXPECT_EQ(ipos_plant_run(plant(), time), IPOS_PLANT_OK) << opened_.message();
+  }
   void pass(int64_t time) const { run_to(now() + time); }
   uint32_t bus(const char* name) const {
     uint32_t number = 0;
@@ -112,7 +118,9 @@ class Talk {
   void set(const char* of, const char* name, int64_t to) const {
     EXPECT_EQ(ipos_plant_write(plant(), signal(of, name), to), IPOS_PLANT_OK) << opened_.message();
   }
-  void power(const char* of, bool on) const { EXPECT_EQ(ipos_plant_power(plant(), station(of), on), IPOS_PLANT_OK); }
+  void power(const char* of, bool on) const {
+    EXPECT_EQ(ipos_plant_power(plant(), station(of), on), IPOS_PLANT_OK);
+  }
   // Times the journal says it.
   int told(const std::string& words) const {
     int count = 0;
@@ -176,7 +184,8 @@ class Talk {
 
   void serial_send(const std::string& text, const char* on = "line") const {
     const Bytes bytes = bytes_of(text);
-    EXPECT_EQ(ipos_plant_serial_send(plant(), bus(on), bytes.data(), bytes.size()), IPOS_PLANT_OK) << opened_.message();
+    EXPECT_EQ(ipos_plant_serial_send(plant(), bus(on), bytes.data(), bytes.size()), IPOS_PLANT_OK)
+        << opened_.message();
   }
   std::vector<HeardTelegram> serial_heard(const char* on = "line") const {
     std::vector<HeardTelegram> all;
@@ -209,7 +218,9 @@ class Talk {
     }
     return texts;
   }
-  const std::vector<HeardTelegram>& telegrams() const { return telegrams_; }  // of the last question, with itself
+  const std::vector<HeardTelegram>& telegrams() const {
+    return telegrams_;
+  }  // of the last question, with itself
 
   const OpenedPlant& opened() const { return opened_; }
   ipos_plant* plant() const { return opened_.plant; }
@@ -220,14 +231,16 @@ class Talk {
     while (!(some = opened_.frames(on)).empty()) all.insert(all.end(), some.begin(), some.end());
     return all;
   }
-  static ipos_plant_source unrecorded() {
+  static ipos_plant_source unrecorded(uint32_t commands_a_ms) {
     ipos_plant_source source{};
+    source.commands_a_ms = commands_a_ms;
     source.flags = IPOS_PLANT_NO_RECORD;
     return source;
   }
   uint32_t signal(const char* of, const char* name) const {
     uint32_t found = UINT32_MAX;
-    EXPECT_EQ(ipos_plant_find(plant(), station(of), IPOS_PLANT_ANY, name, &found), IPOS_PLANT_OK) << opened_.message();
+    EXPECT_EQ(ipos_plant_find(plant(), station(of), IPOS_PLANT_ANY, name, &found), IPOS_PLANT_OK)
+        << opened_.message();
     return found;
   }
 

@@ -117,6 +117,9 @@ TEST(PlantFileMistakes, OfAStation) {
                              {"clock_ppm = ^10001\n", "clock_ppm is -10000..10000"},
                              {"clock_ppm = ^'100'\n", "clock_ppm must be"},
                              {"logodrive = ^true\n", "logodrive is of mc07; unit mdxb has no such variants"},
+                             {"cards = ^'DRS'\n", "cards is a list of DRS, DIO and AIO"},
+                             {"cards = [ 'DIO', ^'DRS11' ]\n", "cards is a list of DRS, DIO and AIO"},
+                             {"cards = [ ^5 ]\n", "cards is a list of DRS, DIO and AIO"},
                              {"sbus = ^'a'\n", "there is no bus 'a'"},
                              {"sbus2 = ^'a'\n", "there is no bus 'a'"},
                              {"rs485 = ^'b'\n", "bus 'b' is an SBus, not a serial line"},
@@ -137,7 +140,11 @@ TEST(PlantFileMistakes, OfAStation) {
            {"[[station]]\nname = 'u'\nunit = 'mc31'\nprogram = ^'P'\n", "unit type mc31 runs no program"},
            {"[[station]]\nname = 'u'\nunit = 'mc07'\nlogodrive = false\nprogram = ^'P'\n",
             "a standard MOVITRAC 07 (logodrive = false) is a slave only and runs no program"},
-           {"[[station]]\nname = 'u'\nunit = 'md60a'\nlogodrive = ^false\n", "logodrive is of mc07"}});
+           {"[[station]]\nname = 'u'\nunit = 'md60a'\nlogodrive = ^false\n", "logodrive is of mc07"},
+           {"[[station]]\nname = 'v'\nunit = 'md60a'\n[[station]]\nname = 'u'\nunit = 'md60a'\ncards = []\n[station.encoders]\nX42 = ^'v'\n",
+            "X42 is of the card DRS, which cards does not name"},
+           {"[[station]]\nname = 'u'\nunit = 'compact'\ncards = ^[]\n", "unit compact takes none of these option cards"},
+           {"[[station]]\nname = 'u'\nunit = 'mc07'\ncards = ^[ 'DRS' ]\n", "unit mc07 takes none"}});
   for (const std::string unit : {"md60a", "compact", "mc07", "mc31"})
     expect_mistakes("[[bus]]\nname = 'b'\nkind = 'can'\n[[station]]\nname = 'u'\n",
                     {{"unit = '" + unit + "'\nsbus2 = ^'b'\n", "unit " + unit + " has no SBus 2"}});

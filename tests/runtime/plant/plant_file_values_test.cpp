@@ -184,6 +184,14 @@ TEST(PlantFileValues, VariantsOfUnits) {
   EXPECT_TRUE(read("unit = 'mc07'\n").options.logodrive);
   EXPECT_TRUE(read("unit = 'mc07'\nlogodrive = true\nprogram = 'P'\n").options.logodrive);
   EXPECT_FALSE(read("unit = 'mc07'\nlogodrive = false\n").options.logodrive);
+  const auto cards = [&](const std::string& line) {
+    const DriveOptions options = read("unit = 'md60a'\n" + line).options;
+    return std::tuple(options.drs, options.dio, options.aio);
+  };
+  EXPECT_EQ(cards(""), std::tuple(true, true, true));
+  EXPECT_EQ(cards("cards = []\n"), std::tuple(false, false, false));
+  EXPECT_EQ(cards("cards = ['DIO']\n"), std::tuple(false, true, false));
+  EXPECT_EQ(cards("cards = ['AIO', 'DRS']\n"), std::tuple(true, false, true));
   EXPECT_EQ(read("unit = 'mc07'\nfirmware = 99\nstart_up = '1500us'\n").options.firmware, 99);
   EXPECT_EQ(read("unit = 'mc07'\nstart_up = '1999us'\n").options.start_up_ms, 1U);
   EXPECT_TRUE(read("unit = 'md60a'\nkeypad = true\n").serial.keypad);
