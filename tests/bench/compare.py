@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Runs the benchmarks of this folder on every engine in turn and prints times relative to Lua 5.4.
+"""Runs the benchmarks of this folder on every engine in turn and prints times relative to Lua 5.4, or to another one.
 
-compare.py RUNNER [--rounds N] [--peers lua5.4,c] [--store FILE] [--against FILE] [PROGRAM...]
+compare.py RUNNER [--rounds N] [--peers lua5.4,c] [--base c] [--store FILE] [--against FILE] [PROGRAM...]
 RUNNER is ipos_bench_run. Every round runs every engine once, so that a change of the machine's speed meets all
 of them; a cell is the median over the rounds of the ratios within a round. CPU time, the system's included (it
 tells the two apart by samples, too coarse for runs of 20 ms), without what an empty program takes. All engines must
@@ -43,6 +43,7 @@ def main():
     options.add_argument("--rounds", type=int, default=5)
     options.add_argument("--peers", default="lua5.4,c")
     options.add_argument("--engines", default="reference,fast")
+    options.add_argument("--base", default="lua5.4", help="the engine that the others are divided by")
     stored.add_options(options)
     args = options.parse_args()
     names = args.programs or ISSUE + sorted(f[:-4] for f in os.listdir(HERE) if f.endswith(".IPC") and f[:-4] not in ISSUE)
@@ -80,14 +81,15 @@ def main():
                     sys.exit(f"{name}: the results differ: {results}")
                 for engine in engines:
                     seconds[engine][name].append(times[engine])
-                    ratios[engine][name].append(times[engine] / times["lua5.4"])
+                    ratios[engine][name].append(times[engine] / times[args.base])
 
     def mean(engine, of):
         return math.exp(statistics.mean(math.log(statistics.median(ratios[engine][n])) for n in of))
 
     issue = [n for n in names if n in ISSUE]
     others = [n for n in names if n not in ISSUE]
-    columns = issue + ["geomean"] * bool(issue) + others + ["geomean"] * bool(others)
+    all_of_both = names if issue and others else []
+    columns = issue + ["geomean"] * bool(issue) + others + ["geomean"] * bool(others) + ["all"] * bool(all_of_both)
     print("| engine | " + " | ".join(columns) + " |")
     print("| --- |" + " --- |" * len(columns))
     for engine in engines:
@@ -95,10 +97,11 @@ def main():
         cells += [f"**{mean(engine, issue):.3f}**"] if issue else []
         cells += [f"{statistics.median(ratios[engine][n]):.3f}" for n in others]
         cells += [f"**{mean(engine, others):.3f}**"] if others else []
+        cells += [f"**{mean(engine, all_of_both):.3f}**"] if all_of_both else []
         print(f"| {engine} | " + " | ".join(cells) + " |")
     print("processor: " + stored.processor())
     print("seconds of lua5.4: " + ", ".join(f"{n} {statistics.median(seconds['lua5.4'][n]):.3f}" for n in names))
-    cells = {e: {n: statistics.median(ratios[e][n]) for n in names} for e in engines if e != "lua5.4"}
+    cells = {e: {n: statistics.median(ratios[e][n]) for n in names} for e in engines if e != args.base}
     stored.finish(args, "compare", cells, NOISE)
 
 

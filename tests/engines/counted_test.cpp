@@ -177,6 +177,7 @@ TEST(Counted, IndexesAreTheCounterAndAConstant) {
         {"a division", {store(k, kV), I(Opcode::DivHH, kOther, kV)}},
         {"a system command", {store(k, kV), I(Opcode::WaitK, 1)}, 0, 0, false},
         {"a block", {store(k, kV), I(Opcode::Copy, kOther, kV, 2)}, 0, 0, false},
+        {"a block of one", {store(k, kV), I(Opcode::Copy, kOther, kV, 1)}},
         {"a division by 0", {store(k, kV), I(Opcode::DivHK, kOther, 0)}, 0, 0, false},
     };
     for (const Row& row : rows) {

@@ -52,8 +52,8 @@ TEST(Flow, CommandsAreFoundByTheirAddress) {
   EXPECT_EQ(program.commands[0].target, vm::jit::kNowhere);
 }
 
-// "System commands, COPY, the end of a task and faults are never machine code."
-TEST(Flow, MachineCodeIsAllButSystemCommandsBlocksEndsAndFaults) {
+// "System commands, COPY of more than 8 variables, the end of a task and faults are never machine code."
+TEST(Flow, MachineCodeIsAllButSystemCommandsLongBlocksEndsAndFaults) {
   for (const vm::OpcodeInfo& row : vm::opcode_table()) {
     Instruction command{row.opcode, {}};
     for (size_t n = 0; n < static_cast<size_t>(row.operand_count); ++n) {
@@ -62,12 +62,14 @@ TEST(Flow, MachineCodeIsAllButSystemCommandsBlocksEndsAndFaults) {
         command.operands[n] = 1;
     }
     const bool other = row.flow == vm::Flow::System || row.flow == vm::Flow::SystemCall ||
-                       row.flow == vm::Flow::End || row.opcode == Opcode::Copy;
+                       row.flow == vm::Flow::End;
     EXPECT_EQ(program_of({command, kEnd}).commands[0].native, !other) << row.text;
   }
   for (const Opcode opcode : {Opcode::DivHK, Opcode::ModHK})
     EXPECT_FALSE(program_of({I(opcode, 1, 0), kEnd}).commands[0].native) << "by 0";
   EXPECT_TRUE(program_of({I(Opcode::DivHH, 1, 0), kEnd}).commands[0].native);
+  EXPECT_TRUE(program_of({I(Opcode::Copy, 1, 20, 8), kEnd}).commands[0].native);
+  EXPECT_FALSE(program_of({I(Opcode::Copy, 1, 20, 9), kEnd}).commands[0].native);
 }
 
 struct Shape {
@@ -103,7 +105,8 @@ std::vector<Shape> shapes() {
       {"behind a JMP", {jump(2), kAdd, kAdd, kEnd}, ".jj.", "0000"},
       {"behind RET and END", {kRet, kAdd, kEnd, kAdd, kEnd}, ".j.j.", "00000"},
       {"behind a system command", {kAdd, kWait, kAdd, kEnd}, "..j.", "0000"},
-      {"behind a block copy", {I(Opcode::Copy, 1, 2, 3), kAdd, kEnd}, ".j.", "000"},
+      {"behind a block copy", {I(Opcode::Copy, 1, 2, 9), kAdd, kEnd}, ".j.", "000"},
+      {"behind a short one", {I(Opcode::Copy, 1, 2, 8), kAdd, kEnd}, "...", "000"},
       {"a loop", {kAdd, kAdd, branch(1), kAdd, kEnd}, ".b...", "01100"},
       {"a loop that jumps", {kAdd, kAdd, jump(1), kAdd, kEnd}, ".b.j.", "01100"},
       {"a command that leads to itself", {kAdd, branch(1), jump(2), kEnd}, ".bbj", "0110"},
@@ -290,8 +293,8 @@ TEST(Flow, TheWayMostTakenNeedsNoCorrection) {
   }
 }
 
-// SETI most likely leads to where a copy of an index stands in its table; else to the table whose beginning was added to the
-// index last, or that it is set to anywhere.
+// SETI most likely leads to the sum of the constants that make its index, as far back as sums make it; a pointer from farther
+// away at least to the greatest constant that it gets anywhere.
 TEST(Flow, TablesAreWhatIsAddedToTheIndex) {
   const auto add = [](int32_t to, int32_t k) { return I(Opcode::AddHK, to, k); };
   const auto set = [](int32_t to, int32_t from) { return I(Opcode::SetHH, to, from); };
@@ -307,43 +310,45 @@ TEST(Flow, TablesAreWhatIsAddedToTheIndex) {
       {"nothing", {}, -1},
       {"added", {add(2, 40)}, 40},
       {"added to another", {add(3, 40)}, -1},
-      {"the last of two", {add(2, 30), add(2, 40)}, 40},
-      {"a step of 1 belongs to a pointer", {add(2, 40), add(2, 1)}, 40},
-      {"only a step of 1", {add(2, 1)}, -1},
-      {"a step of 2", {add(2, 40), add(2, 2)}, 2},
+      {"a second time", {add(2, 20), add(2, 30)}, 50},
+      {"a step", {add(2, 40), add(2, 2)}, 42},
+      {"a step alone", {add(2, 2)}, 2},
       {"the variable 0", {add(2, 0)}, 0},
       {"the last variable", {add(2, kLast)}, kLast},
       {"behind the last variable", {add(2, kLast + 1)}, -1},
+      {"a sum behind the last variable", {add(2, 30), add(2, 40)}, 40},
       {"below the first", {add(2, -1)}, -1},
       {"behind a copy", {add(3, 40), set(2, 3)}, 40},
-      {"added behind the copy", {add(3, 30), set(2, 3), add(2, 40)}, 40},
+      {"on both sides of it", {add(3, 3), set(2, 3), add(2, 40)}, 43},
       {"added to another behind the copy", {add(3, 40), set(2, 3), add(3, 30)}, 40},
       {"added before the copy to what is overwritten", {add(2, 40), set(2, 3)}, -1},
       {"a copy serves two elements of a table", {set(2, 3), add(2, 40), add(2, 1)}, 41},
       {"and the one in front", {set(2, 3), add(2, 40), add(2, 1), add(2, -2)}, 39},
       {"a copy goes on to another table", {set(2, 3), add(2, 40), add(2, -33)}, 7},
-      {"a copy that has gone beyond", {set(2, 3), add(2, 40), add(2, 30)}, 30},
+      {"a record of a pointer set to the table", {set_k(3, 40), set(2, 3), add(2, 2)}, 42},
+      {"of one that the table was added to", {add(3, 40), set(2, 3), add(2, 2)}, 42},
       {"taken away", {I(Opcode::SubHK, 2, 40)}, -1},
+      {"taken away from more", {add(2, 40), I(Opcode::SubHK, 2, 3)}, 40},
+      {"taken away from what is set", {set_k(2, 40), I(Opcode::SubHK, 2, 3)}, 37},
       {"set", {set_k(2, 40)}, 40},
-      {"set before, and a step", {set_k(2, 40), add(2, 1)}, 40},
-      {"added and set", {set_k(2, 30), add(2, 40)}, 40},
-      {"the highest that it is set to", {set_k(2, 30), set_k(2, 40), set_k(2, 20)}, 40},
+      {"set before, and a step", {set_k(2, 40), add(2, 1)}, 41},
+      {"what it is set to last", {set_k(2, 30), set_k(2, 40), set_k(2, 20)}, 20},
       {"set to no variable", {set_k(2, kLast + 1)}, -1},
       {"set to the last", {set_k(2, kLast)}, kLast},
       {"set to the first", {set_k(2, 0)}, 0},
       {"another is set", {set_k(3, 40)}, -1},
       {"set behind a copy", {set_k(3, 40), set(2, 3)}, 40},
+      {"a variable is added", {set(2, 3), I(Opcode::AddHH, 2, 4), add(2, 40)}, 40},
+      {"a product", {add(2, 40), I(Opcode::MulHK, 2, 3)}, -1},
+      {"added to a product", {add(2, 40), I(Opcode::MulHK, 2, 3), add(2, 5)}, 5},
+      {"loaded", {set_k(2, 40), I(Opcode::SetiLoad, 2, 3)}, -1},
+      {"a block", {set_k(2, 40), I(Opcode::Copy, 1, 11, 2)}, -1},
+      {"a block beside it", {set_k(2, 40), I(Opcode::Copy, 3, 11, 2)}, 40},
   };
-  // Eight commands back it is looked for.
-  for (const size_t between : {0U, 6U, 7U, 8U}) {
-    Row row{"far away", Commands(between, kNop), between <= 7 ? 40 : -1};
-    row.in_front.insert(row.in_front.begin(), add(2, 40));
-    rows.push_back(row);
-  }
-  // And 32 where it was copied.
-  for (const size_t between : {30U, 31U}) {
-    Row row{"copied far away", Commands(between, kNop), between <= 30 ? 40 : -1};
-    row.in_front.insert(row.in_front.begin(), {set(2, 3), add(2, 40)});
+  // 128 commands back it is looked for.
+  for (const size_t between : {127U, 128U}) {
+    Row row{"far away", Commands(between, kNop), between <= 127 ? 40 : -1};
+    row.in_front.insert(row.in_front.begin(), {set_k(3, 40), set(2, 3)});
     rows.push_back(row);
   }
   for (const Row& row : rows)
@@ -355,7 +360,7 @@ TEST(Flow, TablesAreWhatIsAddedToTheIndex) {
           << row.what << ", " << vm::info(access.opcode).text;
     }
   const Program behind = program_of({load, set_k(2, 40), add(2, 50), kEnd});
-  EXPECT_EQ(behind.commands[0].table, 40) << "it is set anywhere, but what is added behind does not count";
+  EXPECT_EQ(behind.commands[0].table, 50) << "the greatest anywhere";
   for (const size_t n : {1U, 2U, 3U}) EXPECT_EQ(behind.commands[n].table, -1) << "no SETI";
 }
 
@@ -387,18 +392,19 @@ TEST(Flow, TheHottestVariablesAreThoseOfInnerLoops) {
     EXPECT_EQ(hottest(commands, 9), expected[uses - 7]) << uses;
   }
   // What is not machine code does not count, and no other operand does.
-  EXPECT_EQ(hottest({I(Opcode::WaitH, 5), I(Opcode::Copy, 6, 7, 8), I(Opcode::BitMove, 20, 21, 22, 23),
+  EXPECT_EQ(hottest({I(Opcode::WaitH, 5), I(Opcode::Copy, 6, 30, 9), I(Opcode::BitMove, 20, 21, 22, 23),
                      until(9, 0), kEnd},
                     9),
             (Numbers{9, 20, 22}));
+  EXPECT_EQ(hottest({I(Opcode::Copy, 6, 30, 2), until(9, 0), kEnd}, 9), (Numbers{6, 7, 9, 30, 31})) << "a short block";
 }
 
-// "None behind the beginning of a table that is used much more, as it may be an element."
+// "None behind the beginning of a table that is used as if a loop deeper": eight times as much.
 TEST(Flow, ElementsOfATableAreNotKeptInRegisters) {
   using Numbers = std::vector<uint16_t>;
   const auto loop = [](int uses, int accesses) {
     Commands commands{I(Opcode::AddHK, 2, 40)};
-    for (int n = 0; n < accesses; ++n) commands.push_back(I(Opcode::SetiLoad, 2, 2));
+    for (int n = 0; n < accesses; ++n) commands.push_back(I(Opcode::SetiStore, 2, 2));
     for (int n = 0; n < uses; ++n)
       for (const int32_t number : {39, 40, 41}) commands.push_back(I(Opcode::SetHK, number, 0));
     commands.push_back(I(Opcode::JmpLtHK, 2, 5, 0));
@@ -406,10 +412,10 @@ TEST(Flow, ElementsOfATableAreNotKeptInRegisters) {
     return commands;
   };
   EXPECT_EQ(hottest(loop(1, 1), 9), (Numbers{2, 39, 40, 41}));
-  EXPECT_EQ(hottest(loop(1, 2), 9), (Numbers{2, 39, 40, 41})) << "half as much is enough";
-  EXPECT_EQ(hottest(loop(1, 3), 9), (Numbers{2, 39})) << "in front of the table it is no element";
-  EXPECT_EQ(hottest(loop(2, 4), 9), (Numbers{2, 39, 40, 41}));
-  EXPECT_EQ(hottest(loop(2, 5), 9), (Numbers{2, 39}));
+  EXPECT_EQ(hottest(loop(1, 8), 9), (Numbers{2, 39, 40, 41}));
+  EXPECT_EQ(hottest(loop(1, 9), 9), (Numbers{2, 39})) << "in front of the table it is no element";
+  EXPECT_EQ(hottest(loop(2, 16), 9), (Numbers{2, 39, 40, 41}));
+  EXPECT_EQ(hottest(loop(2, 17), 9), (Numbers{2, 39}));
 }
 
 }  // namespace

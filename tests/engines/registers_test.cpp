@@ -159,6 +159,20 @@ TEST(Registers, TwoCommandsThatMayBecomeOne) {
         }
 }
 
+// Blocks in front of what they are copied from, behind it and on it, as long as machine code copies them and longer.
+TEST(Registers, BlocksThatOverlap) {
+  constexpr int32_t kFrom = 5;
+  const std::vector<int32_t> registers[] = {{}, {kFrom}, {7, 8}, {1, 3, 5, 7, 9, 11, 13}, {4, 5, 6, 7, 8, 9, 10, 11}};
+  for (const auto& in_registers : registers)
+    for (int32_t count = 1; count <= 9; ++count)
+      for (int32_t to = 1; to <= 10; ++to) {
+        const Sequence sequence(once({I(Opcode::Copy, to, kFrom, count)}, in_registers));
+        ASSERT_TRUE(sequence.good());
+        SCOPED_TRACE(testing::Message() << count << " to H" << to << ", " << in_registers.size() << " in registers");
+        ASSERT_NO_FATAL_FAILURE(expect_equal(sequence, {}));
+      }
+}
+
 // An index leads to a variable in memory in front of those in registers, between them and behind, to one in a register,
 // to the index itself and to what is loaded or stored, and to none.
 TEST(Registers, IndexesLeadAnywhere) {

@@ -71,7 +71,8 @@ std::optional<CountedLoop> counted_loop(const Program& program, uint32_t first) 
   if (std::count(given.begin(), given.end(), loop.counter) != 1) return std::nullopt;
   for (uint32_t n = first; n + 1 < last; ++n) {
     const Instruction& command = commands[n].instruction;
-    if (std::find(given.begin(), given.end(), set_by(command)) != given.end()) return std::nullopt;
+    if (std::find(given.begin(), given.end(), set_by(command)) != given.end() || named_target(command).count > 1)
+      return std::nullopt;
     const bool loads = command.opcode == Opcode::SetiLoad;
     if (!loads && command.opcode != Opcode::SetiStore) continue;
     const auto constant = constant_of(program, loop, n, command.operands[loads ? 1 : 0]);

@@ -38,8 +38,8 @@ Emitter::Emitter(const Program& program, asmjit::BaseAssembler& assembler, Unwin
     : program_(program),
       unwind_(unwind),
       leave_(assembler.newLabel()),
-      store_pins_(assembler.newLabel()),
-      load_pins_(assembler.newLabel()),
+      load_any_(assembler.newLabel()),
+      store_any_(assembler.newLabel()),
       returned_(assembler.newLabel()),
       a_(assembler),
       pinned_(hottest_variables(program, registers)),
@@ -79,8 +79,8 @@ bool Emitter::run(Emitted& out) {
   exit_paths();
   leave();
   for (const bool stores : {true, false}) {
-    a_.bind(stores ? store_pins_ : load_pins_);
-    pins_subroutine(stores);
+    a_.bind(stores ? store_any_ : load_any_);
+    any_variable(stores);
   }
   returns_to_context();
   tables();
@@ -371,7 +371,7 @@ void Emitter::exit_paths() {
   }
 }
 
-// An index that leads to a variable in a register, or to none.
+// An index that leads beside the expected range, which may be a variable in a register, or to none.
 void Emitter::slow_paths() {
   for (const Slow& slow : slow_) {
     a_.bind(slow.label);
@@ -386,12 +386,22 @@ void Emitter::finish_access(const Slow& slow) {
   slow_.push_back(slow);
 }
 
-// The range of variables in memory an index most likely leads to; where nothing tells, the longest.
+// Where both blocks overlap, from the end that is not overwritten before it is read.
+void Emitter::copy(const Instruction& command) {
+  const int32_t to = command.operands[0], from = command.operands[1], count = command.operands[2];
+  for (int32_t n = 0; n < count; ++n) {
+    const int32_t at = to < from ? n : count - 1 - n;
+    set(to + at, from + at);
+  }
+}
+
+// The range of variables in memory an index most likely leads to: the one that has the table, or begins behind variables of
+// the table that have a register; where nothing tells, the longest.
 Emitter::Range Emitter::range_for(uint32_t n) const {
   const int32_t table = program_.commands[n].table;
   Range longest{0, 0};
   for (const Range& range : ranges_) {
-    if (table >= 0 && bits(table) - range.first < range.count) return range;
+    if (table >= 0 && bits(table) < range.first + range.count) return range;
     if (range.count > longest.count) longest = range;
   }
   return longest;

@@ -64,7 +64,7 @@ class Emitter {
   struct Range {
     uint32_t first, count;
   };
-  // The code for an index that is none of a variable in memory.
+  // The code for an index outside of the range that is expected.
   struct Slow {
     asmjit::Label label, back;
     uint32_t command;
@@ -73,11 +73,10 @@ class Emitter {
   Emitter(const Program& program, asmjit::BaseAssembler& assembler, Unwind unwind, size_t registers);
 
   // ---- The processor's part. frame.cpp: the way in; the way out, from leave_, with the word address in a
-  // register; the code at returned_; the subroutines store_pins_ and load_pins_.
+  // register; the code at returned_.
   virtual void enter() = 0;
   virtual void leave() = 0;
   virtual void returns_to_context() = 0;
-  virtual void pins_subroutine(bool stores) = 0;
 
   // control.cpp: the number of flow.hpp, jumps and calls.
   virtual void correct(int32_t by) = 0;
@@ -100,8 +99,11 @@ class Emitter {
   virtual void data(uint32_t n) = 0;
   // Two in one; false where there is no way that is better.
   virtual bool fused(const Instruction& first, const Instruction& second) = 0;
-  // SETI with all variables in memory meanwhile; exits when the index leads to none.
+  // SETI by the subroutine; exits when the index leads to none.
   virtual void slow_access(const Slow& slow) = 0;
+  // The subroutines load_any_ and store_any_: a variable by its number, in memory or in a register.
+  virtual void any_variable(bool stores) = 0;
+  virtual void set(int32_t to, int32_t from) = 0;
 
   // ---- For it.
   asmjit::Label exit(uint32_t n, int32_t credit);
@@ -112,10 +114,12 @@ class Emitter {
   void table_of_returns(const asmjit::Label& table, const asmjit::Label& none);
   // After an access: where the code for any other index comes back to.
   void finish_access(const Slow& slow);
+  // COPY, as one SET after the other.
+  void copy(const Instruction& command);
 
   const Program& program_;
   const Unwind unwind_;
-  const asmjit::Label leave_, store_pins_, load_pins_, returned_;
+  const asmjit::Label leave_, load_any_, store_any_, returned_;
   int32_t flags_of_ = -1;  // the processor's flags tell of this variable
   bool in_range_ = false;  // what is being made is executed with indexes in range_for() only
 

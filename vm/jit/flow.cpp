@@ -9,11 +9,18 @@ namespace ipos::vm::jit {
 namespace {
 
 constexpr int kMostDepth = 7;
+constexpr uint64_t kDeeper = 8;  // times what is in a loop is executed as often as what is around it, by guess
 
-// Commands that are left to the engines: those of the host, blocks as they are rare, and what always faults.
+// Commands that are left to the engines: those of the host, long blocks, and what always faults.
 bool is_native(const Instruction& command, Flow flow) {
+  constexpr uint32_t kLongestBlock = 8;
   if (flow == Flow::System || flow == Flow::SystemCall || flow == Flow::End) return false;
-  return coding(command.opcode).writes != Writes::Block && !always_faults(command);
+  return named_target(command).count <= kLongestBlock && !always_faults(command);
+}
+
+bool sums(Opcode opcode) {
+  return opcode == Opcode::SetHH || opcode == Opcode::SetHK || opcode == Opcode::AddHH || opcode == Opcode::AddHK ||
+         opcode == Opcode::SubHK;
 }
 
 bool goes_on(Flow flow) { return flow == Flow::Next || flow == Flow::Branch; }
@@ -153,39 +160,38 @@ void Program::count() {
     if (commands[n].checks && !commands[n].called) commands[n].arrival = std::max(by_branch[n].credit, 0);
 }
 
-// What has been added to the copy of an index, also where one copy serves several elements in turn; else the constant that was
-// added to the index last, or one that it is set to anywhere.
+// The sum of the constants that make an index, back to where it comes of something else than sums: the beginning of the
+// table, or some elements more. For a pointer that comes from farther away at least the greatest constant it gets anywhere.
 void Program::find_tables() {
-  constexpr uint32_t kLook = 8, kLookForCopy = 32;
-  const auto is_variable = [&](int32_t number) { return static_cast<uint32_t>(number) < limits.variables; };
-  std::vector<int32_t> set_to(limits.variables, -1);
+  constexpr uint32_t kLook = 128;
+  const auto is_variable = [&](int64_t number) { return number >= 0 && number < limits.variables; };
+  std::vector<int32_t> anywhere(limits.variables, -1);
   for (const Command& command : commands) {
-    const auto& operands = command.instruction.operands;
-    if (command.instruction.opcode != Opcode::SetHK || !is_variable(operands[1])) continue;
-    int32_t& constant = set_to[static_cast<size_t>(operands[0])];
+    const auto& [opcode, operands] = command.instruction;
+    if ((opcode != Opcode::SetHK && opcode != Opcode::AddHK) || !is_variable(operands[1])) continue;
+    int32_t& constant = anywhere[static_cast<size_t>(operands[0])];
     constant = std::max(constant, operands[1]);
   }
   for (uint32_t n = 0; n < commands.size(); ++n) {
     const Opcode opcode = commands[n].instruction.opcode;
     if (opcode != Opcode::SetiLoad && opcode != Opcode::SetiStore) continue;
-    int32_t& table = commands[n].table;
     int32_t variable = commands[n].instruction.operands[opcode == Opcode::SetiLoad ? 1 : 0];
-    int64_t added = 0;   // to the variable, back to where it became a copy
-    int32_t near = -1;   // what was added to it last. A step of 1 belongs to a pointer
-    for (uint32_t back = n; table < 0 && back-- > 0 && back + kLookForCopy >= n;) {
+    int64_t sum = 0;
+    bool begun = false, made = false;  // of constants
+    for (uint32_t back = n; !begun && back-- > 0 && back + kLook >= n;) {
       const Instruction& command = commands[back].instruction;
-      if (command.operands[0] != variable) continue;
-      if (command.opcode == Opcode::AddHK) {
-        added += command.operands[1];
-        if (near < 0 && command.operands[1] != 1 && is_variable(command.operands[1]) && back + kLook >= n) near = command.operands[1];
-      } else if (command.opcode == Opcode::SetHH) {
-        if (near >= 0 || added > 1) table = added > 1 && added < limits.variables ? static_cast<int32_t>(added) : near;
-        variable = command.operands[1];
-        added = 0;
+      if (!named_target(command).has(static_cast<uint32_t>(variable))) continue;
+      const bool adds = command.opcode == Opcode::AddHK || command.opcode == Opcode::SetHK;
+      if (adds || command.opcode == Opcode::SubHK) {
+        sum += adds ? int64_t{command.operands[1]} : -int64_t{command.operands[1]};
+        made = true;
       }
+      if (command.opcode == Opcode::SetHH) variable = command.operands[1];
+      begun = command.opcode == Opcode::SetHK || !sums(command.opcode);
     }
-    if (table < 0) table = near;
-    if (table < 0) table = set_to[static_cast<size_t>(variable)];
+    int32_t& table = commands[n].table;
+    if (made && is_variable(sum)) table = static_cast<int32_t>(sum);
+    if (!begun) table = std::max(table, anywhere[static_cast<size_t>(variable)]);
   }
 }
 
@@ -194,18 +200,18 @@ std::vector<uint16_t> hottest_variables(const Program& program, size_t most) {
   std::vector<uint64_t> weights(size, 0), tables(size, 0);
   for (const Command& command : program.commands) {
     if (!command.native || command.depth == 0) continue;
-    const uint64_t weight = uint64_t{1} << (3 * command.depth);
-    const OpcodeInfo& row = info(command.instruction.opcode);
-    for (size_t n = 0; n < static_cast<size_t>(row.operand_count); ++n)
-      if (row.operands[n].kind == OperandKind::Variable)
-        weights[static_cast<size_t>(command.instruction.operands[n])] += weight;
+    uint64_t weight = 1;
+    for (int n = 0; n < command.depth; ++n) weight *= kDeeper;
+    each_named(command.instruction, [&](VariableRange range) {
+      for (uint32_t n = range.first; n < range.end(); ++n) weights[n] += weight;
+    });
     if (command.table >= 0) tables[static_cast<size_t>(command.table)] += weight;
   }
   std::vector<uint16_t> numbers;
   uint64_t table = 0;
   for (size_t n = 0; n < size; ++n) {
     table = std::max(table, tables[n]);
-    if (weights[n] != 0 && 2 * weights[n] >= table) numbers.push_back(static_cast<uint16_t>(n));
+    if (weights[n] != 0 && kDeeper * weights[n] >= table) numbers.push_back(static_cast<uint16_t>(n));
   }
   std::stable_sort(numbers.begin(), numbers.end(),
                    [&](uint16_t a, uint16_t b) { return weights[a] > weights[b]; });

@@ -57,7 +57,7 @@ struct Program {
 };
 
 // The variables used most, loops weighing more, at most `most` of them; none that is used outside of loops
-// only, and none after the beginning of a table that is used much more, as it may be an element.
+// only, and none behind the beginning of a table that is used a loop deeper, as it may be an element.
 std::vector<uint16_t> hottest_variables(const Program& program, size_t most);
 
 }  // namespace ipos::vm::jit

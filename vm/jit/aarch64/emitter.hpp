@@ -26,7 +26,6 @@ class EmitterA64 final : public Emitter {
   void enter() override;
   void leave() override;
   void returns_to_context() override;
-  void pins_subroutine(bool stores) override;
   void move_pins(bool stores);
 
   // control.cpp
@@ -47,10 +46,11 @@ class EmitterA64 final : public Emitter {
   void data(uint32_t n) override;
   bool fused(const Instruction& first, const Instruction& second) override;
   void slow_access(const Slow& slow) override;
+  void any_variable(bool stores) override;
+  void set(int32_t to, int32_t from) override;
   // The command with `from` instead of its first variable to work on; false when it is none that works on
   // one.
   bool operation(const Instruction& command, int32_t from);
-  void set(int32_t to, int32_t from);
   void add_constant(a64::Gp to, a64::Gp from, int32_t constant);
   void logical_constant(Opcode opcode, a64::Gp to, a64::Gp from, int32_t constant);
   void multiply_constant(a64::Gp to, a64::Gp from, int32_t factor);

@@ -27,11 +27,6 @@ void EmitterA64::move_pins(bool stores) {
   }
 }
 
-void EmitterA64::pins_subroutine(bool stores) {
-  move_pins(stores);
-  a_.ret(a64::x30);
-}
-
 void EmitterA64::enter() {
   for (uint32_t n = kFirstSaved; n < kLastSaved; n += 2)
     a_.stp(a64::x(n), a64::x(n + 1), a64::ptr_pre(a64::sp, -16));

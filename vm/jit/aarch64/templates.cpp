@@ -40,6 +40,7 @@ void EmitterA64::data(uint32_t n) {
     }
     case Opcode::DivHH: divide(n, true); break;
     case Opcode::ModHH: divide(n, false); break;
+    case Opcode::Copy: copy(command); break;
     case Opcode::SetiLoad: load(n); break;
     case Opcode::SetiStore: store(n); break;
     case Opcode::BitMove: move_bit(command, false); break;
@@ -243,18 +244,43 @@ void EmitterA64::slow_access(const Slow& slow) {
   const Command& command = program_.commands[slow.command];
   const auto& operands = command.instruction.operands;
   const bool loads = command.instruction.opcode == Opcode::SetiLoad;
-  a_.bl(store_pins_);
-  a_.ldr(w0, memory(operands[loads ? 1 : 0]));
-  compare(w0, program_.limits.variables);
+  const a64::Gp index = value(operands[loads ? 1 : 0], w0);
+  compare(index, program_.limits.variables);
   a_.b_hs(exit(slow.command, command.credit));
+  if (index != w0) a_.mov(w0, index);
   if (loads) {
-    a_.ldr(w1, indexed(w0));
-    a_.str(w1, memory(operands[0]));
+    a_.bl(load_any_);
+    const a64::Gp to = result(operands[0], w0);
+    if (to != w0) a_.mov(to, w0);
+    finish(operands[0], to);
   } else {
-    a_.ldr(w1, memory(operands[1]));
-    a_.str(w1, indexed(w0));
+    const a64::Gp from = value(operands[1], w1);
+    if (from != w1) a_.mov(w1, from);
+    a_.bl(store_any_);
   }
-  a_.bl(load_pins_);
+}
+
+// w0 is the number of the variable, then its value; w1 the value to be stored.
+void EmitterA64::any_variable(bool stores) {
+  std::vector<asmjit::Label> found(pinned().size());
+  for (size_t n = 0; n < found.size(); ++n) {
+    found[n] = a_.newLabel();
+    compare(w0, pinned()[n]);
+    a_.b_eq(found[n]);
+  }
+  if (stores)
+    a_.str(w1, indexed(w0));
+  else
+    a_.ldr(w0, indexed(w0));
+  a_.ret(a64::x30);
+  for (size_t n = 0; n < found.size(); ++n) {
+    a_.bind(found[n]);
+    if (stores)
+      a_.mov(kPins[n], w1);
+    else
+      a_.mov(w0, kPins[n]);
+    a_.ret(a64::x30);
+  }
 }
 
 std::optional<a64::Gp> EmitterA64::pin(int32_t variable) const {

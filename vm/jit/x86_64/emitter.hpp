@@ -24,7 +24,6 @@ class EmitterX86 final : public Emitter {
   void enter() override;
   void leave() override;
   void returns_to_context() override;
-  void pins_subroutine(bool stores) override;
   void move_pins(bool store);
   void block_base(x86::Gp to);
 
@@ -46,13 +45,14 @@ class EmitterX86 final : public Emitter {
   void data(uint32_t n) override;
   bool fused(const Instruction& first, const Instruction& second) override;
   void slow_access(const Slow& slow) override;
+  void any_variable(bool stores) override;
+  void set(int32_t to, int32_t from) override;
   bool set_and_operate(const Instruction& first, const Instruction& second);
   bool accumulate(const Instruction& first, const Instruction& second);
   void alu(asmjit::InstId id, int32_t to, const Instruction& command, bool constant);
   void multiply(int32_t to, const Instruction& command, bool constant);
   void multiply_constant(x86::Gp to, int32_t from, int32_t factor);
   void shift(asmjit::InstId id, int32_t to, const Instruction& command, bool constant);
-  void set(int32_t to, int32_t from);
   void divide(uint32_t n, bool quotient);
   void divide_constant(const Instruction& command, bool quotient);
   void move_bit(const Instruction& command, bool inverted);

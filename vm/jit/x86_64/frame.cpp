@@ -46,11 +46,6 @@ void EmitterX86::move_pins(bool stores) {
   }
 }
 
-void EmitterX86::pins_subroutine(bool stores) {
-  move_pins(stores);
-  a_.ret();
-}
-
 void EmitterX86::enter() {
   for (const x86::Gp& saved : kSaved) a_.push(saved);
   a_.mov(x86::rax, x86::rsp);

@@ -97,6 +97,7 @@ void EmitterX86::data(uint32_t n) {
     case Opcode::ModHH: divide(n, false); break;
     case Opcode::DivHK: divide_constant(command, true); break;
     case Opcode::ModHK: divide_constant(command, false); break;
+    case Opcode::Copy: copy(command); break;
     case Opcode::SetiLoad: load(n); break;
     case Opcode::SetiStore: store(n); break;
     case Opcode::BitSet: a_.emit(Id::kIdOr, place(a), Imm(wrap(1U << b))); break;
@@ -278,18 +279,38 @@ void EmitterX86::slow_access(const Slow& slow) {
   const Command& command = program_.commands[slow.command];
   const auto& operands = command.instruction.operands;
   const bool loads = command.instruction.opcode == Opcode::SetiLoad;
-  a_.call(store_pins_);
-  a_.mov(x86::eax, memory(operands[loads ? 1 : 0]));
+  a_.emit(Id::kIdMov, x86::eax, place(operands[loads ? 1 : 0]));
   a_.cmp(x86::eax, uint32_t{program_.limits.variables});
   a_.jae(exit(slow.command, command.credit));
   if (loads) {
-    a_.mov(x86::ecx, indexed(x86::eax));
-    a_.mov(memory(operands[0]), x86::ecx);
+    a_.call(load_any_);
+    a_.emit(Id::kIdMov, place(operands[0]), x86::eax);
   } else {
-    a_.mov(x86::ecx, memory(operands[1]));
-    a_.mov(indexed(x86::eax), x86::ecx);
+    a_.emit(Id::kIdMov, x86::ecx, place(operands[1]));
+    a_.call(store_any_);
   }
-  a_.call(load_pins_);
+}
+
+// eax is the number of the variable, then its value; ecx the value to be stored.
+void EmitterX86::any_variable(bool stores) {
+  const auto move = [&](const asmjit::Operand& variable) {
+    if (stores)
+      a_.emit(Id::kIdMov, variable, x86::ecx);
+    else
+      a_.emit(Id::kIdMov, x86::eax, variable);
+    a_.ret();
+  };
+  std::vector<asmjit::Label> found(pinned().size());
+  for (size_t n = 0; n < found.size(); ++n) {
+    found[n] = a_.newLabel();
+    a_.cmp(x86::eax, uint32_t{pinned()[n]});
+    a_.je(found[n]);
+  }
+  move(indexed(x86::eax));
+  for (size_t n = 0; n < found.size(); ++n) {
+    a_.bind(found[n]);
+    move(kPins[n]);
+  }
 }
 
 std::optional<x86::Gp> EmitterX86::pin(int32_t variable) const {
