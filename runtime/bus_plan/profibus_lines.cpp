@@ -10,12 +10,12 @@ namespace {
 
 ProfibusLinePlan plan_line(const PlantFile& file, const BusConfig& bus, std::vector<Finding>& findings) {
   const profibus::LinePlan paper = profibus_paper(file, bus);
-  const auto tell = [&](std::vector<std::string> texts) {
-    for (std::string& text : texts)
-      findings.push_back({FindingKind::ProfibusLine, bus.name, std::move(text)});
+  const auto tell = [&](FindingKind kind, std::vector<std::string> texts) {
+    for (std::string& text : texts) findings.push_back({kind, bus.name, std::move(text)});
   };
-  tell(profibus_master_findings(file, bus));
-  tell(profibus::check_plan(paper));
+  tell(FindingKind::ProfibusLine, profibus_master_findings(file, bus));
+  tell(FindingKind::ProfibusLine, profibus::check_plan(paper));
+  tell(FindingKind::ProfibusWear, profibus_wear_findings(file, bus));
   check_octet_faults(file, bus, findings);
   ProfibusLinePlan line;
   line.name = bus.name;

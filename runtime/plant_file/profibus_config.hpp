@@ -23,6 +23,14 @@ struct BusUse {
   FilePlace place;
 };
 
+// Which MOVITRAC 31 has which option pcb, as far as the file says (MOVITRAC 31 PROFIBUS, 2.1.2): for `ipos bus plan`.
+struct ProfibusFit {
+  char pcb = 0;     // FFP 31A or 31C, 'A' or 'C'
+  char series = 0;  // MOVITRAC 31B or 31C, 'B' or 'C'
+  std::optional<uint8_t> size{};
+  std::optional<uint8_t> service_code{};  // of component 4
+};
+
 struct ProfibusUse {
   const profibus::OptionType* option = nullptr;
   FilePlace option_place;
@@ -30,6 +38,7 @@ struct ProfibusUse {
   uint8_t address = profibus::kNoAddressYet;  // of the switches on the card
   bool fms_switch = false;                    // FMS/DP of a combislave, else DP
   std::optional<bool> terminator{};           // the one of the card, for `ipos bus plan` and the journal
+  ProfibusFit fit{};
 };
 
 // New outputs, as octets from the first or, with the words alone, after the parameter channel.

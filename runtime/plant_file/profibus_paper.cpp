@@ -39,9 +39,11 @@ std::vector<const ProfibusMasterConfig*> masters_of(const PlantFile& file, const
   return masters;
 }
 
-profibus::Interface interface_of(profibus::OptionKind kind) {
+// An option pcb of which the file says nothing is the one that fits the series.
+profibus::Interface interface_of(profibus::OptionKind kind, const ProfibusFit& fit) {
   switch (kind) {
-    case profibus::OptionKind::Ffp31: return profibus::Interface::Ffp31C;
+    case profibus::OptionKind::Ffp31:
+      return fit.pcb == 'A' || (fit.pcb == 0 && fit.series == 'B') ? profibus::Interface::Ffp31A : profibus::Interface::Ffp31C;
     case profibus::OptionKind::Size0: return profibus::Interface::Size0;
     default: return profibus::Interface::Card;
   }
@@ -53,8 +55,12 @@ profibus::PlannedStation planned(const Slave& slave,
   profibus::PlannedStation station;
   station.name = slave.name;
   station.address = slave.use->address;
-  station.interface = interface_of(option.kind);
+  const ProfibusFit& fit = slave.use->fit;
+  station.interface = interface_of(option.kind, fit);
+  if (fit.series == 'B' || (fit.series == 0 && fit.pcb == 'A')) station.series = profibus::InverterSeries::B;
   if (station.interface == profibus::Interface::Size0) station.size = 0;
+  station.size = fit.size.value_or(station.size);
+  station.service_code_4 = fit.service_code.value_or(station.service_code_4);
   if (station.interface == profibus::Interface::Card) station.card = &option;
   station.ident = option.ident;
   station.octets = 0;
@@ -82,17 +88,18 @@ bool stores(const StationConfig& station) {
 bool is_stored(uint16_t object) { return object == 996 || object == 997 || object >= 1000; }
 
 // Cyclic writing needs P802 = OFF (MOVITRAC 31 PROFIBUS, 6): here what a master of FMS does again and again.
-void check_cyclic_writes(const PlantFile& file, const BusConfig& bus, const std::string& master, const FmsMasterConfig& fms,
-                         std::vector<std::string>& found) {
+std::vector<std::string> cyclic_writes(const PlantFile& file, const std::string& master, const FmsMasterConfig& fms) {
+  std::vector<std::string> found;
   for (const FmsMasterConfig::Request& request : fms.requests) {
     const bool writes = request.request.service == profibus::fms::Service::Write && is_stored(request.request.index);
     if (request.every == 0 || !writes) continue;
     for (const StationConfig& station : file.stations)
-      if (station.profibus.bus.bus == bus.name && station.profibus.address == fms.links[request.link].address && stores(station))
+      if (station.profibus.bus.bus == fms.bus && station.profibus.address == fms.links[request.link].address && stores(station))
         found.push_back(fmt::format("{} writes object {} of {} every {} ms, and each write goes to the EEPROM of {}: set its P802 (save "
                                     "EEPROM) to OFF",
                                     master, request.request.index, station.name, request.every / kMillisecond, station.name));
   }
+  return found;
 }
 
 }  // namespace
@@ -133,13 +140,11 @@ std::vector<std::string> profibus_master_findings(const PlantFile& file, const B
   std::vector<std::string> found;
   const std::vector<Slave> slaves = slaves_of(file, bus.name);
   for (const ControlConfig& control : file.controls)
-    if (const auto* fms = control.as<FmsMasterConfig>(); fms != nullptr && fms->bus == bus.name) {
-      check_cyclic_writes(file, bus, control.name, *fms, found);
+    if (const auto* fms = control.as<FmsMasterConfig>(); fms != nullptr && fms->bus == bus.name)
       for (const FmsMasterConfig::Link& link : fms->links)
         for (const std::string& broken : profibus::fms::check_master_entry(link.entry, *link.connection))
           found.push_back(fmt::format("{}: its entry does not fit connection {} of slave {}: {}", control.name,
                                       link.connection->cref, link.address, broken));
-    }
   std::map<uint8_t, uint8_t> first;  // master of a slave's address
   for (const ProfibusMasterConfig* master : masters_of(file, bus.name))
     for (const profibus::SlavePlan& plan : master->slaves) {
@@ -156,6 +161,14 @@ std::vector<std::string> profibus_master_findings(const PlantFile& file, const B
                         "parameterises it, and the other gets Master_Lock",
                         owner->second, own, plan.address));
     }
+  return found;
+}
+
+std::vector<std::string> profibus_wear_findings(const PlantFile& file, const BusConfig& bus) {
+  std::vector<std::string> found;
+  for (const ControlConfig& control : file.controls)
+    if (const auto* fms = control.as<FmsMasterConfig>(); fms != nullptr && fms->bus == bus.name)
+      for (std::string& text : cyclic_writes(file, control.name, *fms)) found.push_back(std::move(text));
   return found;
 }
 

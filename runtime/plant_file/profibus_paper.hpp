@@ -14,4 +14,7 @@ profibus::LinePlan profibus_paper(const PlantFile& file, const BusConfig& bus);
 // What the masters of the line have wrong of its slaves, in words: one that is not there, one that another master has.
 std::vector<std::string> profibus_master_findings(const PlantFile& file, const BusConfig& bus);
 
+// What they write again and again into memory that wears out.
+std::vector<std::string> profibus_wear_findings(const PlantFile& file, const BusConfig& bus);
+
 }  // namespace ipos::runtime

@@ -248,7 +248,7 @@ void read_motor(PlantReader& reader, const toml::table& station, StationConfig& 
     read_nameplate(reader, *motor, machine);
   }
   if (const toml::table* rating = reader.subtable(station, "unit_rating")) {
-    reader.known_keys(*rating, "[station.unit_rating]", {"power", "current", "type_code"});
+    reader.known_keys(*rating, "[station.unit_rating]", {"power", "current", "type_code", "series", "size", "service_code"});
     config.options.type_code = static_cast<int32_t>(reader.count(*rating, "type_code", INT32_MAX, 0));
     const auto power = read_quantity(reader, *rating, "power", kPower);
     const auto current = read_quantity(reader, *rating, "current", kCurrent);

@@ -11,16 +11,31 @@ namespace {
 
 constexpr size_t kChannelOctets = 8;  // octets of the parameter channel
 
+// The option pcb where the file says which of the two it is.
+struct Pcb {
+  std::string_view word;
+  char letter;
+};
+constexpr std::string_view kFfp31 = "ffp31";
+constexpr Pcb kPcbs[] = {{"ffp31a", 'A'}, {"ffp31c", 'C'}};
+
 void read_option(PlantReader& reader, const toml::table& table, StationConfig& config) {
-  const std::string word = reader.text(table, "option", "", false);
+  std::string word = reader.text(table, "option", "", false);
   if (word.empty()) return;
   ProfibusUse& use = config.profibus;
+  for (const Pcb& pcb : kPcbs)
+    if (word == pcb.word) {
+      use.fit.pcb = pcb.letter;
+      word = kFfp31;
+    }
   use.option_place = place_of(*table.get("option"));
   std::vector<std::string_view> words, units;
   for (const profibus::OptionType& option : profibus::option_types()) {
     if (option.kind == profibus::OptionKind::Gateway) continue;
     if (std::find(words.begin(), words.end(), option.word) == words.end()) words.push_back(option.word);
     if (option.word == word) units.push_back(option.unit);
+    if (option.word == kFfp31)
+      for (const Pcb& pcb : kPcbs) words.push_back(pcb.word);
   }
   if (units.empty())
     return reader.error(use.option_place,
@@ -221,11 +236,31 @@ class MasterReader {
   ProfibusMasterConfig& config_;
 };
 
+// What the plate of the inverter says, and its label of service codes.
+void read_fit(PlantReader& reader, const toml::table& table, const StationConfig& config, ProfibusFit& fit) {
+  const toml::table* rating = reader.subtable(table, "unit_rating");
+  if (rating == nullptr) return;
+  const bool is_mc31 = config.unit == nullptr || config.unit->has(stdlib::Trait::OwnParameterNumbers);
+  for (const std::string_view key : {"series", "size", "service_code"})
+    if (const toml::node* node = rating->get(key); node != nullptr && !is_mc31)
+      reader.error(place_of(*node), fmt::format("{} is on the plate of unit mc31, not of {}", key, config.unit->name));
+  const std::string series = reader.text(*rating, "series", "", false);
+  if (series == "B" || series == "C")
+    fit.series = series[0];
+  else if (!series.empty())
+    reader.error(place_of(*rating->get("series")), fmt::format("unknown series '{}'; known are B, C", series), AllowedValues{{"\"B\"", "\"C\""}});
+  constexpr uint32_t kLargestSize = 9, kLargestCode = 99;  // ours
+  if (rating->contains("size")) fit.size = static_cast<uint8_t>(reader.count(*rating, "size", kLargestSize, 0));
+  if (rating->contains("service_code"))
+    fit.service_code = static_cast<uint8_t>(reader.count(*rating, "service_code", kLargestCode, 0));
+}
+
 }  // namespace
 
 void read_profibus_card(PlantReader& reader, const toml::table& table, StationConfig& config) {
   read_option(reader, table, config);
   ProfibusUse& use = config.profibus;
+  read_fit(reader, table, config, use.fit);
   use.bus = reader.bus_use(table, "profibus", BusKind::Profibus);
   use.address = static_cast<uint8_t>(
       reader.count(table, "profibus_address", profibus::kBroadcast, profibus::kNoAddressYet));

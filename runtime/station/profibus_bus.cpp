@@ -57,6 +57,7 @@ FmsOperator& ProfibusBus::fms_operator(const std::set<uint8_t>& taken) {
 std::vector<std::string> ProfibusBus::findings(const PlantFile& file) const {
   std::vector<std::string> texts = check_line(profibus_paper(file, config()));
   for (std::string& text : profibus_master_findings(file, config())) texts.push_back(std::move(text));
+  for (std::string& text : profibus_wear_findings(file, config())) texts.push_back(std::move(text));
   return texts;
 }
 

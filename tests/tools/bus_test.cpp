@@ -218,6 +218,63 @@ TEST(Bus, TheDeviceDataOfAProfibusCard) {
   EXPECT_TRUE(contains(wrong.err, "'dfp21' of unit mdxb is no PROFIBUS interface; known are ")) << wrong.err;
 }
 
+// MOVITRAC 31 PROFIBUS, 2.1.2: FFP 31A fits MOVITRAC 31B with a service code of component 4 of at least 14, FFP 31C all MOVITRAC 31C of the sizes 1 to 4.
+TEST(Bus, WhichProfibusOptionFitsWhere) {
+  PROVES("DP-ID-11");
+  const TemporaryFolder folder;
+  const auto plan = [&](const std::string& option, const std::string& plate) {
+    folder.write("plant.toml", "[[bus]]\nname = \"dp\"\nkind = \"profibus\"\nbaud = 500000\n[[station]]\nname = \"inv\"\nunit = \"mc31\"\noption = \"" + option +
+                                   "\"\nprofibus = \"dp\"\nprofibus_address = 8\n[station.unit_rating]\n" + plate +
+                                   "[[control]]\nname = \"plc\"\nprofibus = \"dp\"\n[[control.slave]]\naddress = 8\n");
+    return run_ipos({"bus", "plan", "plant.toml"}, folder.path());
+  };
+  struct Row {
+    const char* option;
+    const char* plate;
+    const char* refusal;  // empty: it fits
+  };
+  for (const Row& row :
+       {Row{"ffp31a", "series = \"B\"\nservice_code = 14\n", ""},
+        {"ffp31a", "series = \"B\"\nservice_code = 13\n", "inv: FFP 31A wants a service code of component 4 of at least 14"},
+        {"ffp31", "series = \"B\"\nservice_code = 13\n", "inv: FFP 31A wants a service code of component 4 of at least 14"},
+        {"ffp31a", "series = \"C\"\n", "inv: FFP 31A is for MOVITRAC 31B"},
+        {"ffp31c", "series = \"B\"\n", "inv: FFP 31C is for MOVITRAC 31C"},
+        {"ffp31c", "size = 0\n", "inv: FFP 31C is for sizes 1 to 4"},
+        {"ffp31c", "size = 1\n", ""},
+        {"ffp31", "series = \"C\"\nsize = 4\n", ""},
+        {"ffp31", "size = 5\n", "inv: FFP 31C is for sizes 1 to 4"},
+        {"size0", "size = 0\n", ""},
+        {"size0", "size = 2\n", "inv: the built-in interface is that of MOVITRAC 31C size 0"},
+        {"ffp31", "", ""}}) {
+    const CommandResult result = plan(row.option, row.plate);
+    if (*row.refusal == '\0') {
+      EXPECT_EQ(result.exit_code, 0) << row.option << ' ' << row.plate << result.err;
+    } else {
+      EXPECT_TRUE(contains(result.err, std::string("dp: error: ") + row.refusal + " [B27]")) << row.option << ' ' << row.plate << result.err;
+    }
+  }
+  folder.write("other.toml", "[[station]]\nname = \"b\"\nunit = \"mdxb\"\n[station.unit_rating]\nsize = 1\n");
+  EXPECT_TRUE(contains(run_ipos({"bus", "plan", "other.toml"}, folder.path()).err,
+                       "other.toml:5:8: error: size is on the plate of unit mc31, not of mdxb"));
+}
+
+// A hint, in the plan and in the journal.
+TEST(Bus, WhoWearsOutAMemoryIsTold) {
+  const TemporaryFolder folder;
+  for (const auto& [save, told] : {std::pair("ON", true), {"OFF", false}}) {
+    folder.write("plant.toml",
+                 std::string("[[bus]]\nname = \"dp\"\nkind = \"profibus\"\nbaud = 500000\n[[station]]\nname = \"inv\"\nunit = \"mc31\"\n"
+                             "option = \"ffp31\"\nprofibus = \"dp\"\nprofibus_address = 8\n[station.parameters]\nP802 = \"") +
+                     save + "\"\n[[control]]\nname = \"panel\"\nkind = \"fms\"\nprofibus = \"dp\"\n[[control.slave]]\naddress = 8\n" +
+                     "[[control.slave.request]]\nat = \"1s\"\nevery = \"200ms\"\nwrite = 1025\ndata = \"00 00 09 50\"\n");
+    const CommandResult plan = run_ipos({"bus", "plan", "plant.toml"}, folder.path());
+    EXPECT_EQ(contains(plan.err, "[B30]"), told) << plan.err;
+    EXPECT_EQ(contains(plan.err, "panel writes object 1025 of inv every 200 ms"), told) << plan.err;
+    const CommandResult run = run_ipos({"run", "plant.toml", "--for", "10ms", "--why"}, folder.path());
+    EXPECT_EQ(contains(run.out + run.err, "panel writes object 1025 of inv every 200 ms"), told) << run.out << run.err;
+  }
+}
+
 TEST(Bus, BadLogLinesAreLocatedAndTheOthersDecoded) {
   const TemporaryFolder folder;
   folder.write("a.log",

@@ -88,7 +88,7 @@ TEST(StationMotor, MistakesHaveTheirPlace) {
           {"[station.motor]\ntype = 'DT90L4'\npower = ^'2.2 kW'\n", "power is more than voltage, current and cos_phi bring"},
           {"[station.motor]\ntype = 'DT90L4'\ncos_phi = ^1\n", "cos_phi must be a number, 0.1 to 0.99"},
           {"[station.unit_rating]\ncurrent = ^4\n", "current must be a text with its unit"},
-          {"[station.unit_rating]\n^type = 1\n", "unknown key 'type' in [station.unit_rating]; known are power, current, type_code"},
+          {"[station.unit_rating]\n^type = 1\n", "unknown key 'type' in [station.unit_rating]; known are power, current, type_code, series, size, service_code"},
           {"[station.unit_rating]\ntype_code = ^-1\n", "type_code is 0 to"},
           {"control = ^'good'\n", "unknown control 'good'; known are ideal, real"},
           {"control = ^1\n", "control must be a text in quotes"},

@@ -45,7 +45,7 @@ TEST(PlantFileProfibus, TheCardOfAStation) {
 
 TEST(PlantFileProfibus, MistakesOfACard) {
   expect_mistakes(kDpPlant, {
-                                {"option = ^'dp'\n", "'dp' is no option; known are ffp31, size0, dfp"},
+                                {"option = ^'dp'\n", "'dp' is no option; known are ffp31, ffp31a, ffp31c, size0, dfp"},
                                 {"option = ^'gateway'\n", "'gateway' is no option"},
                                 {"option = ^'ffp31'\n", "option 'ffp31' is for unit mc31, not for mdxb"},
                                 {"option = ^'dfp'\nsbus2 = 'b'\n",

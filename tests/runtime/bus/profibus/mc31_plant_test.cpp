@@ -300,7 +300,7 @@ TEST(Mc31Plant, ErrorsOfTheFile) {
   };
   refuses("[[bus]]\nname = \"dp\"\nkind = \"profibus\"\nbaud = 12000\n",
           "4:8 PROFIBUS has 9600, 19200, 93750, 187500, 500000 or 1500000 baud, not 12000");
-  refuses(station("option = \"ffp32\"\n"), "7:10 'ffp32' is no option; known are ffp31, size0, dfp");
+  refuses(station("option = \"ffp32\"\n"), "7:10 'ffp32' is no option; known are ffp31, ffp31a, ffp31c, size0, dfp");
   refuses(station("option = \"ffp31\"\n", "mdxb"), "7:10 option 'ffp31' is for unit mc31, not for mdxb");
   refuses(station("profibus = \"dp\"\n"), "7:12 profibus needs option");
   refuses(station("option = \"ffp31\"\nprofibus = \"dp\"\n"), "8:12 profibus needs profibus_address");
