@@ -128,6 +128,8 @@ class Table:
         if key in CAMPAIGN_KEYS and self.reader.kind == "campaign":
             return CAMPAIGN_KEYS[key]
         form = "".join(row + "\n" for row in form.split("\n") if row and not row.startswith(key + " "))
+        if (self.name, key) == ("expect", "equals"):
+            form += 'signal = "AO1"\n'  # whose values have decimals
         said = {kind: self.ask(form, f"{key} = {value}") for kind, value in VALUES.items()}
         if any("write [[" in message for message in said["integer"]):
             return {"type": "array", "items": Table(self.reader, f"{self.name}.{key}", self.nested(key),
