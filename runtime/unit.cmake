@@ -2,10 +2,10 @@
 # what it is made of: what it tells, what serves its program beside the drive, what it keeps, the commands.
 ipos_layer(journal FOLDERS runtime/journal USES clock)
 ipos_layer(services FOLDERS runtime/services
-  SOURCES services/timers.cpp services/mirrored_values.cpp services/pid_block.cpp services/positioning_service.cpp services/synchronous_service.cpp
+  SOURCES services/timers.cpp services/mirrored_values.cpp services/pid_block.cpp services/positioning_service.cpp services/lead.cpp services/synchronous_service.cpp
   USES journal drive positioning part stdlib
   LIBS fmt::fmt)
-ipos_batches(ipos_services HOT services/timers.cpp services/mirrored_values.cpp services/positioning_service.cpp)
+ipos_batches(ipos_services HOT services/timers.cpp services/mirrored_values.cpp services/positioning_service.cpp services/lead.cpp)
 ipos_layer(kept FOLDERS runtime/nv_memory/kept
   SOURCES nv_memory/kept/index_windows.cpp nv_memory/kept/wear.cpp nv_memory/kept/unit_memory.cpp
   USES journal storage drive exec image isa stdlib

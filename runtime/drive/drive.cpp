@@ -8,6 +8,7 @@
 
 #include "runtime/drive/error_memory.hpp"
 #include "runtime/drive/indices.hpp"
+#include "runtime/motion/axis_following.hpp"
 
 namespace ipos::runtime {
 
@@ -19,7 +20,6 @@ namespace {
 constexpr uint32_t kFactorySettingMs = 2000;
 // More automatic resets than this without a manual one are not made (ours).
 constexpr int kAutoResets = 3;
-constexpr int32_t kOvervoltage = 900'000;  // mV, where the unit protects itself; ours
 
 namespace faults {
 constexpr uint8_t kOvercurrent = 1, kDcLink = 7, kSpeedMonitoring = 8, kHeatSink = 11, kExternal = 26, kLimitSwitches = 27,
@@ -429,7 +429,7 @@ inline void Drive::count() {
     state_.counted_energy += kEnergyDigit;
     parameters_.set_display(index::kEnergy, parameters_.value(index::kEnergy) + 1);
   }
-  if (state_.axis.current_limited() || state_.limited_ms != 0) count_limited();
+  if (counts_limited()) count_limited();
   if (parameters_.factory_setting_running() && ++state_.factory_setting_ms >= kFactorySettingMs) {
     state_.factory_setting_ms = 0;
     parameters_.finish_factory_setting();
@@ -561,6 +561,30 @@ void Drive::tick(const PositionControl& position) {
   if (!same || !position.controls) choose_order();
   move();
   show();
+}
+
+// tick() would find nothing to decide, to count or to watch but what Following asks in each millisecond. What the last one has shown
+// holds: of all that it shows only orders of the program can have changed since.
+bool Drive::can_follow(const PositionControl& position) const {
+  const Axis& axis = state_.axis;
+  const bool quiet = quiet_for_ == now_.changes() && now_->settings == parameters_.changes() &&
+                     shown_for_ == settings_version_ && !now_->starting_up && !parameters_.factory_setting_running();
+  if (!quiet || !position.controls || axis.standing() || now_->output_stage != axis.output_stage() ||
+      !Axis::Following::possible(axis, order_))
+    return false;
+  PositionControl last = state_.position;
+  last.speed = position.speed;
+  return last == position && state_.outputs.holds_ipos_outputs(state_.ipos_outputs) && state_.outputs.holds_deviation(0) &&
+         axis.power().energy() - state_.counted_energy < kEnergyDigit && (!counts_limited() || may_count_limited());
+}
+
+Ticks Drive::following_ticks(const PositionControl& position, Ticks most) const {
+  if (!can_follow(position)) return 0;
+  const Ticks ticks = std::min({most, kMinuteMs - 1 - std::max(state_.mains_ms, state_.enabled_ms), state_.outputs.bound()});
+  const PowerSection& power = state_.axis.power();
+  const bool healthy = power.dc_link() <= kOvervoltage && power.dc_link() >= least_dc_link_;
+  const bool cool = power.heat_sink_within(ticks) <= kOvertemperature && power.motor_utilization_within(ticks) < kFullUtilization;
+  return healthy && cool ? ticks : 0;
 }
 
 void Drive::power_cycle() {

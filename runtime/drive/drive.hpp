@@ -94,6 +94,11 @@ class Drive final : private DriveLink {
   // One millisecond has passed.
   void tick(const PositionControl& position = {});
 
+  // --- ticks in which it goes as positioning tells it, and nothing else happens (drive_following.hpp) ---
+  class Following;
+  // How many of the next ticks, at most so many, may be such ones with this control, as far as that can be said before.
+  Ticks following_ticks(const PositionControl& position, Ticks most) const;
+
   // --- ticks in which nothing is decided ---
   struct Moment;
   // Before a tick.
@@ -218,6 +223,7 @@ class Drive final : private DriveLink {
   static constexpr int32_t kOvertemperature =
       90;  // °C of the heat sink, where the unit protects itself; ours
   static constexpr int32_t kFullUtilization = 100'000;
+  static constexpr int32_t kOvervoltage = 900'000;  // mV, where the unit protects itself; ours
   // Of its voltage at mains, below which the power section is off; ours.
   static constexpr int32_t kLowLinkPercent = 60;
 
@@ -306,11 +312,15 @@ class Drive final : private DriveLink {
   void watch_resets();
   bool links_run() const;
   bool machine_suffers() const;
+  bool can_follow(const PositionControl& position) const;
   bool counts_mains() const { return decisions_.mains_gone != now_->mains_stop; }
   Command mains_off_response() const;
   void begin_without_mains();
   void watch_mains();
   void count_limited();
+  bool counts_limited() const { return state_.axis.current_limited() || state_.limited_ms != 0; }
+  // Once more without a fault.
+  bool may_count_limited() const { return state_.limited_ms < set().speed_monitoring_delay; }
   void watch_machine();
   void clear_faults();
   int32_t monitored(int32_t delay_ms) const;

@@ -114,15 +114,20 @@ class Outputs {
   uint16_t levels() const { return levels_; }
   // A tick with the settings of the last one. False: nothing was done, for it takes tick().
   [[gnu::always_inline]] bool go_on(const OutputInputs& in) {
-    const bool same = in.flags == basis_.flags && in.ipos_outputs == basis_.ipos_outputs &&
-                      in.current_limit == current_limit_ && speeds_.have(magnitude(in.speed)) &&
-                      deviations_.have(magnitude(int64_t{in.speed} - in.setpoint)) &&
-                      currents_[in.limited ? 1 : 0].have(magnitude(in.current));
-    if (!same) return false;
-    if (ticks_left_ == 0) return false;
+    if (!holds(in) || ticks_left_ == 0) return false;
     advance(1);
     return true;
   }
+  // Nothing that is compared has another result with these.
+  [[gnu::always_inline]] bool holds(const OutputInputs& in) const {
+    return in.flags == basis_.flags && in.ipos_outputs == basis_.ipos_outputs && in.current_limit == current_limit_ &&
+           holds_speed(in.speed) && holds_deviation(int64_t{in.speed} - in.setpoint) &&
+           holds_current(in.current, in.limited);
+  }
+  bool holds_ipos_outputs(uint16_t levels) const { return levels == basis_.ipos_outputs; }
+  bool holds_speed(int64_t speed) const { return speeds_.have(magnitude(speed)); }
+  bool holds_deviation(int64_t deviation) const { return deviations_.have(magnitude(deviation)); }
+  bool holds_current(int64_t current, bool limited) const { return currents_[limited ? 1 : 0].have(magnitude(current)); }
   // Ticks that go on with the same values (pace/part.hpp): delays run.
   void advance(Ticks ticks) {
     if (ticks_left_ == kNoBound) return;
@@ -131,6 +136,15 @@ class Outputs {
   }
   Ticks bound() const { return ticks_left_; }
   bool operator==(const Outputs&) const = default;
+
+  // Values with which no comparison has another result.
+  struct Range {
+    int64_t low = 0;
+    int64_t high = -1;
+    bool have(int64_t value) const { return low <= value && value <= high; }
+    bool operator==(const Range&) const = default;
+  };
+  const Range& speeds() const { return speeds_; }  // of the amount
 
  private:
   static int64_t magnitude(int64_t value) { return value < 0 ? -value : value; }
@@ -148,13 +162,6 @@ class Outputs {
     Signals signals{};
     std::array<uint8_t, 16> functions{};
     bool operator==(const Basis&) const = default;
-  };
-  // Values with which no comparison has another result.
-  struct Range {
-    int64_t low = 0;
-    int64_t high = -1;
-    bool have(int64_t value) const { return low <= value && value <= high; }
-    bool operator==(const Range&) const = default;
   };
   static Range both(const Range& a, const Range& b) {
     return {std::max(a.low, b.low), std::min(a.high, b.high)};

@@ -128,6 +128,8 @@ class Axis : private AxisParts {
     step(order);
     return state();
   }
+  // The same step again and again while it goes as it is told (axis_following.hpp).
+  class Following;
   // What so many ticks under the last order do, at most bound() of them. Only while no ramp runs and the DC
   // link stays as it is: then only position, temperatures and energy change.
   void advance(Ticks ticks);

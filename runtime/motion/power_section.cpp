@@ -75,13 +75,12 @@ void PowerSection::find_currents(const Currents& currents) {
   active_current_ = static_cast<int32_t>(active);
   output_current_ = static_cast<int32_t>(root(square(active) + square(reactive)));
 
-  constexpr int64_t kTopUtilization = 10'000'000;  // 1/1000 %
   const int64_t heat = square(output_current_);
   losses_ = kLosses * heat / square(kHundredPercent);
   unit_target_ = std::min(kTopUtilization, heat / continuous_heat_);
   motor_target_ = std::min(kTopUtilization, heat / rated_heat_);
   // In 1/1000 K, as whole() is to be divided.
-  heat_sink_target_ = std::min<int64_t>(1'000'000, heat / 10'000'000 * machine_.heat_sink_rise);
+  heat_sink_target_ = std::min<int64_t>(kTopHeat, heat / 10'000'000 * machine_.heat_sink_rise);
 }
 
 int32_t PowerSection::frequency() const {
@@ -92,6 +91,10 @@ int32_t PowerSection::frequency() const {
 
 void PowerSection::advance(Ticks steps) {
   draw(steps);
+  warm(steps);
+}
+
+void PowerSection::warm(Ticks steps) {
   Lag::Way unit = unit_.begin(unit_target_), motor = motor_.begin(motor_target_),
            heat_sink = heat_sink_.begin(heat_sink_target_);
   for (; steps != 0; --steps) {

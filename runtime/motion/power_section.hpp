@@ -60,6 +60,31 @@ class PowerSection {
     motor_.follow(motor_target_);
     heat_sink_.follow(heat_sink_target_);
   }
+
+  // --- steps in a row of a motor that drives, with the limits of the last one (Axis::Following) ---
+  bool drives(int32_t current_limit, int32_t direct_current) const {
+    return currents_.supply == Supply::Driving && currents_.current_limit == current_limit &&
+           currents_.direct_current == direct_current;
+  }
+  int64_t torque() const { return currents_.torque; }
+  // A step in its parts: the currents of its torque, where that is another one;
+  void give(int64_t torque) {
+    find_currents({currents_.supply, torque, currents_.current_limit, currents_.direct_current});
+  }
+  // what it draws at this speed;
+  [[gnu::always_inline]] void draw_at(int32_t speed) {
+    mechanical_ = currents_.torque * speed / machine_.rated_speed;
+    step_power();
+  }
+  // what so many steps warm between which nothing was given; and the speed of the last one.
+  void warm(Ticks steps);
+  void show_speed(int32_t speed) { speed_ = {speed, currents_.torque, true}; }
+  // The most of each in so many steps, whatever is given.
+  int32_t heat_sink_within(Ticks steps) const { return temperature(heat_sink_.within(steps, kTopHeat)); }
+  int32_t motor_utilization_within(Ticks steps) const {
+    return static_cast<int32_t>(motor_.within(steps, kTopUtilization));
+  }
+
   // Without mains nothing holds the DC link, and nothing is drawn from them. When they come back, the link is charged in
   // kChargeMs from empty.
   void set_mains(bool on);
@@ -100,6 +125,12 @@ class PowerSection {
       value_ += distance < 0 ? -change : change;
     }
     int32_t whole() const { return static_cast<int32_t>(value_ >> 24); }
+    // The most of it in so many steps towards targets up to `top`: none goes further than the first one towards that would.
+    int64_t within(Ticks steps, int64_t top) const {
+      const int64_t way = (top << 24) - value_;
+      if (way <= 0) return whole();
+      return (value_ + static_cast<int64_t>(std::min(Wide{magnitude(way)}, Wide{divided(magnitude(way))} * steps))) >> 24;
+    }
 
     // Several steps towards one target: its distance gets less and never turns its sign.
     struct Way {
@@ -160,13 +191,16 @@ class PowerSection {
   void find_currents(const Currents& currents);
   // Mechanical power in 1/1000 % of the rated power; losses are added, what comes back charges the DC link.
   void step_power() {
+    // What is taken from a link that the mains hold leaves it as it is.
+    if (power() < -kStandby || charge_ != least_charge_) change_charge();
+    draw(1);
+  }
+  void change_charge() {
     const int64_t change = std::clamp<int64_t>(power() + kStandby, -kMostPower, kMostPower) * charge_per_power_;
     const int64_t charge = std::clamp(charge_ - change, least_charge_, most_charge_);
-    if (charge != charge_) {
-      charge_ = charge;
-      find_dc_link();
-    }
-    draw(1);
+    if (charge == charge_) return;
+    charge_ = charge;
+    find_dc_link();
   }
   void find_dc_link();
   void charge_on();
@@ -188,6 +222,8 @@ class PowerSection {
   // The unit's rated power lifts the square of the DC link voltage by 10000 V² a millisecond: about 200 µF a kilowatt.
   static constexpr int64_t kChargePerPower = 100'000;  // mV² per 1/1000 %
   static constexpr int64_t kPerWs = int64_t{100'000} * 1'000;
+  static constexpr int64_t kTopUtilization = 10'000'000;  // 1/1000 %
+  static constexpr int64_t kTopHeat = 1'000'000;          // 1/1000 K
 
   struct Figures {  // of the machine
     int32_t rated_speed, rated_slip, pole_pairs, rated_power, ambient, heat_sink_rise, rated_active, rated_magnetizing;

@@ -38,8 +38,7 @@ FineSpeed Shaft::pulled(FineSpeed speed, double field, double stiffness, const R
 }
 
 int64_t Shaft::torque_between(FineSpeed before, FineSpeed after, const Resistance& resistance) const {
-  const int direction = sign_of(before != 0 ? before : after);
-  return (after - before) / gain_ + resistance.load + direction * resistance.friction;
+  return torque_for(before, after, resistance.against(sign_of(before != 0 ? before : after)));
 }
 
 FineSpeed Shaft::free(FineSpeed speed, int64_t torque, const Resistance& resistance) const {

@@ -13,6 +13,7 @@ namespace ipos::runtime {
 struct Resistance {
   int64_t load;      // positive pulls counter-clockwise
   int64_t friction;  // against the motion, brake included
+  int64_t against(int direction) const { return load + direction * friction; }
 };
 
 struct Motion {
@@ -28,11 +29,12 @@ class Shaft {
   // Speed after one millisecond of this motor torque.
   FineSpeed free(FineSpeed speed, int64_t torque, const Resistance& resistance) const;
 
+  // What takes it to the setpoint within one millisecond, against what acts on it in the direction of its motion.
+  int64_t torque_for(FineSpeed speed, FineSpeed setpoint, int64_t against) const { return (setpoint - speed) / gain_ + against; }
   // The motor drives the shaft to the setpoint within one millisecond, as far as its torque reaches.
   Motion driven(FineSpeed speed, FineSpeed setpoint, int64_t torque_limit,
                 const Resistance& resistance) const {
-    const int direction = sign_of(setpoint != 0 ? setpoint : speed);
-    const int64_t needed = (setpoint - speed) / gain_ + resistance.load + direction * resistance.friction;
+    const int64_t needed = torque_for(speed, setpoint, resistance.against(sign_of(setpoint != 0 ? setpoint : speed)));
     if (-torque_limit <= needed && needed <= torque_limit) return {setpoint, needed, false};
     return limited(speed, setpoint, needed, torque_limit, resistance);
   }
@@ -52,11 +54,12 @@ class Shaft {
   // proportional and an integral part. It is soft enough for a partner that answers a millisecond later.
   Motion controlled(FineSpeed speed, FineSpeed setpoint, int64_t torque_limit);
   void forget_control() { held_ = 0; }
+  // The motor gives what it can of a torque that it cannot give.
+  Motion limited(FineSpeed speed, FineSpeed setpoint, int64_t needed, int64_t torque_limit,
+                 const Resistance& resistance) const;
   bool operator==(const Shaft&) const = default;
 
  private:
-  Motion limited(FineSpeed speed, FineSpeed setpoint, int64_t needed, int64_t torque_limit,
-                 const Resistance& resistance) const;
 
   int64_t gain_;      // change of speed in one millisecond by a torque of 1
   int64_t held_ = 0;  // the integral part of controlled()

@@ -29,6 +29,12 @@ class Encoders {
     counter_ = motor_counter;
     find_positions();
   }
+  // The same for several milliseconds, before the last of which it was at `before`.
+  void count(int32_t before, int32_t motor_counter) {
+    turned_ += wrapped(int64_t{before} - counter_);
+    counter_ = before;
+    count(motor_counter);
+  }
   // What turns X14 in place of the motor, as it counts; nothing: the motor does. It begins where X14 stands. True: it has
   // turned.
   bool count_external(std::optional<int32_t> count) {

@@ -242,20 +242,12 @@ inline void Positioner::keep_in_range() {
   if (planned_target_) *planned_target_ += change;
 }
 
-// P910 and P915. The unit of the gain is ours: with 1.000 a lag of one motor increment gives 0.5 rpm.
-inline int32_t Positioner::speed_order() const {
-  const int64_t feed = speed_of_rate(profile_.speed(), factor_) * settings_.feedforward / 100'000;
-  const int64_t lag = motor_way(lag_, factor_);
-  const int64_t top = std::max(settings_.maximum_speed, 0);
-  return static_cast<int32_t>(std::clamp(feed + lag * settings_.gain / 2, -top, top));
-}
-
 // The millisecond of an axis that follows, and the speed for it.
 [[gnu::always_inline]] inline int32_t Positioner::lead() {
   profile_.tick();
   keep_in_range();
   if (lags_too_far()) report(PositioningEvent::LagError);
-  return speed_order();
+  return speed_order(profile_.speed(), lag_, factor_, std::max(settings_.maximum_speed, 0));
 }
 
 int32_t Positioner::go_on() { return lead(); }

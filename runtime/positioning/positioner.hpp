@@ -87,6 +87,8 @@ class Positioner {
   // the same settings and inputs except the speed, which it orders.
   bool goes_on() const;
   int32_t go_on();
+  // The same and observe() in several milliseconds within a phase of a travel (positioner_leading.hpp).
+  class Leading;
   // idle() and observe() for several ms at once, where nobody looks at the order, and for how many of them
   // that holds; `before` is the counter one ms before the end.
   void advance(int32_t before, int32_t motor_counter);
@@ -183,7 +185,13 @@ class Positioner {
   void count_external();
   void keep_in_range();
   int32_t lead();
-  int32_t speed_order() const;
+  // P910 and P915. The unit of the gain is ours: with 1.000 a lag of one motor increment gives 0.5 rpm.
+  int32_t speed_order(Rate rate, int32_t lag, const EncoderFactor& factor, int64_t top) const {
+    constexpr int32_t kAll = 100'000;
+    const int64_t speed = speed_of_rate(rate, factor);
+    const int64_t feed = settings_.feedforward == kAll ? speed : speed * settings_.feedforward / kAll;
+    return static_cast<int32_t>(std::clamp(feed + motor_way(lag, factor) * settings_.gain / 2, -top, top));
+  }
 
   void run_reference();
   void finish_reference(int32_t reference_point);

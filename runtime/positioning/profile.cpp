@@ -1,6 +1,6 @@
 // Planning and reading out. All ramps, whatever their shape, run at their mean speed on average: time and
 // distance of a plan are those of the linear one.
-#include "runtime/positioning/profile.hpp"
+#include "runtime/positioning/profile_stretch.hpp"
 
 #include <cassert>
 
@@ -143,17 +143,8 @@ void Profile::shift(int64_t increments) {
   if (arrives_) goal_ += change;
 }
 
-// With 34 bits, 16 s, the product below has 64.
-inline int64_t Profile::share_in(const Phase& phase, Span time) {
-  if (phase.duration < Span{1} << (64 - kShareBits))
-    return static_cast<int64_t>((static_cast<uint64_t>(time) << kShareBits) /
-                                static_cast<uint64_t>(phase.duration));
-  return static_cast<int64_t>((Wide{time} << kShareBits) / phase.duration);
-}
-
-inline Fine Profile::way_in(const Phase& phase, Span time, int64_t distance_share) {
-  const Wide change = Wide{phase.to - phase.from} * phase.duration * distance_share;
-  return static_cast<Fine>((Wide{phase.from} * time + (change >> kShareBits)) >> kRateBits);
+int64_t Profile::share_in_long(Span duration, Span time) {
+  return static_cast<int64_t>((Wide{time} << kShareBits) / duration);
 }
 
 // What is the same in all its milliseconds. The last phase is counted from its end, so that it ends exactly
@@ -199,10 +190,9 @@ void Profile::read_out_curve(const Phase& phase, int64_t share) {
 [[gnu::always_inline]] inline void Profile::read_out(const Phase& phase, int64_t speed_share,
                                                      int64_t distance_share) {
   position_ = origin_ + way_in(phase, elapsed_, distance_share);
-  speed_ = phase.from + static_cast<Rate>((Wide{phase.to - phase.from} * speed_share) >> kShareBits);
-  // Rounding must not carry it past the target.
+  speed_ = speed_in(phase, speed_share);
   const int way = sign(phase.from + phase.to);
-  if (arrives_ && !(turns_ && phase_ == 0) && way * (position_ - goal_) > 0) position_ = goal_;
+  if (ends_at_goal() && way * (position_ - goal_) > 0) position_ = goal_;
 }
 
 void Profile::arrive() {

@@ -39,6 +39,8 @@ class Profile {
 
   // One millisecond.
   void tick();
+  // Several of them within a phase (profile_stretch.hpp).
+  class Stretch;
 
   // No plan: the shaft is somewhere else in charge, or rests.
   void hold(Fine position, Rate speed);
@@ -74,7 +76,13 @@ class Profile {
   bool at_last_phase() const { return arrives_ && phase_ + 1U == phases_; }
   void arrive();
   static int64_t share_in(const Phase& phase, Span time);
+  static int64_t share_in_long(Span duration, Span time);
   static Fine way_in(const Phase& phase, Span time, int64_t distance_share);
+  static Rate speed_in(const Phase& phase, int64_t speed_share) {
+    return phase.from + static_cast<Rate>((Wide{phase.to - phase.from} * speed_share) >> kShareBits);
+  }
+  // Rounding must not carry it past the target.
+  bool ends_at_goal() const { return arrives_ && !(turns_ && phase_ == 0); }
   void read_out(const Phase& phase, int64_t speed_share, int64_t distance_share);
   void read_out_curve(const Phase& phase, int64_t share);
 

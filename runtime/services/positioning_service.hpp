@@ -42,6 +42,9 @@ class PositioningService {
   bool leads() const { return !positioner_.idles(); }
   // order() where goes_on() is true, or was before ticks that had_only_moved(), and nobody has written since.
   const PositionControl& go_on(uint32_t syncs);
+  // The same with a tick of the drive and observe(), at most so often, within a phase of the travel and as long as nothing else
+  // can happen (lead.cpp). Returns how often; only the last one need be asked had_only_moved().
+  Ticks lead_on(uint32_t syncs, Ticks most);
   // After observe(): no bit has changed, and the next tick has nothing to report.
   bool had_only_moved() const {
     return positioner_.in_position() == ordered_.in_position && !positioner_.lags_too_far();

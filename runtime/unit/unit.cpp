@@ -94,9 +94,14 @@ inline bool Unit::had_only_moved() const {
 }
 
 Ticks Unit::move_on(Ticks most) {
-  for (Ticks done = 0; done != most; ++done) {
-    move_on();
-    if (!had_only_moved()) return done;
+  for (Ticks done = 0; done != most;) {
+    Ticks moved = positioning_ ? positioning_->lead_on(drive_.syncs(), most - done) : 0;
+    if (moved == 0) {
+      move_on();
+      moved = 1;
+    }
+    done += moved;
+    if (!had_only_moved()) return done - 1;
   }
   return most;
 }

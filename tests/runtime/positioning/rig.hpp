@@ -24,9 +24,9 @@ struct Rig {
   using Settings = std::initializer_list<std::pair<const char*, int32_t>>;
 
   // CFC & IPOS without premagnetization unless said otherwise.
-  explicit Rig(Settings settings = {}, const char* unit = "md60a")
+  explicit Rig(Settings settings = {}, const char* unit = "md60a", const runtime::MachineData& machine = {})
       : parameters(*stdlib::find_unit(unit)),
-        drive(parameters),
+        drive(parameters, machine),
         service(milliseconds, drive, parameters, journal, "rig", [](uint32_t) { return std::string(); }) {
     set("700", 13);
     set("323", 0);
