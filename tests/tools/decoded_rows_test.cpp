@@ -60,6 +60,17 @@ TEST(DecodedRows, RequestAndResponseAreNotMixedUp) {
   }
 }
 
+// Bits 4 and 5 of the management octet; units use four octets, 11.
+TEST(DecodedRows, LengthsOfTheData) {
+  PROVES("MLK-03");
+  const std::vector<std::string> lines = decoded(
+      {"20B#0200211600000BB8", "20B#1200211600000BB8", "20B#2200211600000BB8", "20B#3200211600000BB8"});
+  ASSERT_EQ(lines.size(), 4U);
+  for (size_t n = 0; n < 3; ++n)
+    EXPECT_TRUE(contains(lines[n], "length " + std::to_string(n + 1) + " in place of 4 bytes")) << lines[n];
+  EXPECT_FALSE(contains(lines[3], "in place of")) << lines[3];
+}
+
 std::string unit_of_address(int address, const std::string& parameters) {
   return "[[station]]\nname = \"unit" + std::to_string(address) +
          "\"\nunit = \"mc07\"\nsbus = \"sbus\"\n[station.parameters]\nP813 = " + std::to_string(address) +

@@ -13,10 +13,11 @@ class Mdx {
   // No times of premagnetizing and brake, no least speed, no filter of AI1 unless the test has one.
   explicit Mdx(const std::string& parameters, const std::string& load = kBareRotor,
                const std::string& inputs = kEnabled, const std::string& program = "")
-      : talk(can_bus() +
-                 unit_on(std::string("sbus = \"sbus\"\n") + (program.empty() ? "" : "program = \"P.IPC\"\n"),
+      : talk(can_bus() + serial_bus() +
+                 unit_on(std::string("sbus = \"sbus\"\nrs485 = \"line\"\n") +
+                             (program.empty() ? "" : "program = \"P.IPC\"\n"),
                          "u", "md60a",
-                         "P813 = 1\nP301 = 0\nP323 = 0\nP731 = 0\nP732 = 0\n" +
+                         "P813 = 1\nP810 = 1\nP301 = 0\nP323 = 0\nP731 = 0\nP732 = 0\n" +
                              std::string(parameters.find("P115") == std::string::npos ? "P115 = 0\n" : "") +
                              parameters,
                          inputs + load),
@@ -337,16 +338,23 @@ TEST(DriveRows, EightResponses) {
     int number;
     const char* parameter;
   };
-  for (const Cause& cause : {Cause{"external fault", 26, "P830"}, {"SBus timeout", 47, "P836"}})
+  for (const Cause& cause :
+       {Cause{"external fault", 26, "P830"}, {"RS-485 timeout", 43, "P833"}, {"SBus timeout", 47, "P836"}})
     for (int response = 0; response <= 7; ++response) {
       SCOPED_TRACE(std::string(cause.name) + ", response " + std::to_string(response));
-      Mdx drive("P100 = 10\nP101 = 3\nP815 = 100\nP603 = 11\nP604 = 12\nP136 = " + std::to_string(kRapidMs) +
-                    "\nP137 = " + std::to_string(kEmergencyMs) + "\n" + cause.parameter + " = " +
-                    std::to_string(response) + "\n",
-                kBareRotor, std::string(kEnabled) + "DI04 = 1\n");
-      drive.words(6, 5000, 2500);
+      const bool external = cause.number == 26, serial = cause.number == 43;
+      Mdx drive(
+          std::string(serial ? "P100 = 2\nP101 = 1\nP812 = 200\n" : "P100 = 10\nP101 = 3\nP815 = 100\n") +
+              "P603 = 11\nP604 = 12\nP136 = " + std::to_string(kRapidMs) + "\nP137 = " +
+              std::to_string(kEmergencyMs) + "\n" + cause.parameter + " = " + std::to_string(response) + "\n",
+          kBareRotor, std::string(kEnabled) + "DI04 = 1\n");
+      const auto control = [&](int64_t ms) {
+        if (!serial) return drive.words(6, 5000, ms);
+        for (int64_t passed = 0; passed < ms; passed += 90)
+          drive.talk.serial_ask("02 01 05 00 06 13 88 00 00");
+      };
+      control(2500);
       ASSERT_NEAR(drive.rpm(), 1000, 0.3);
-      const bool external = cause.number == 26;
       if (external) drive.talk.set("u", "DI04", 0);
       const bool shown = response != 0;
       int ms = 0;
@@ -383,11 +391,11 @@ TEST(DriveRows, EightResponses) {
       }
       // The cause goes: a warning ends by itself, an error by a reset.
       if (external) drive.talk.set("u", "DI04", 1);
-      drive.words(6, 5000, 2500);
+      control(2500);
       EXPECT_EQ(drive.fault(), error || response == 1 ? cause.number : 0);
       EXPECT_NEAR(drive.rpm(), error ? 0 : 1000, 0.3);
       drive.talk.set("u", "DI05", 1);
-      drive.words(6, 5000, 2500);
+      control(2500);
       EXPECT_EQ(drive.fault(), 0);
       EXPECT_NEAR(drive.rpm(), 1000, 0.3);
     }

@@ -497,6 +497,72 @@ TEST(SerialRows, AddressesOfMovlnk) {
   }
 }
 
+// The master's side of the pauses and directions: a program is the master, the library listens or answers.
+std::string master(const std::string& calls) {
+  return "#include <const.h>\nMOVLNK Ml; MLDATA Mld;\nmain()\n{\n Ml.BusType = 2; Ml.Address = 1; Ml.Format "
+         "= 6; Ml.Service = 2; "
+         "Ml.Index = 8470; Ml.DPointer = numof(Mld); Ml.Result = 99;\n Mld.PO1 = 6;\n " +
+         calls + "\n while (1) {}\n}\n";
+}
+const std::string kMaster =
+    serial_bus() + unit_on("rs485 = \"line\"\nprogram = \"P.IPC\"\n", "m", "mdxb", numbered(9));
+
+TEST(SerialRows, AMasterPausesAfterABroadcast) {
+  PROVES("RS485-14", "MDB-RS485-22");
+  Talk talk(kMaster + on_line("a", "md60a", numbered(1)),
+            master("Ml.Address = 255; Ml.Format = 129; _MoviLink(Ml); _MoviLink(Ml); _MoviLink(Ml); "
+                   "Ml.Address = 1; _MoviLink(Ml);"));
+  talk.pass(500 * kMs);
+  const auto heard = talk.serial_heard();
+  ASSERT_EQ(heard.size(), 5U) << "three broadcasts, a request and its answer";
+  for (size_t n = 1; n < 4; ++n) EXPECT_GE(heard[n].start - heard[n - 1].end, 25 * kMs) << n;
+  EXPECT_EQ(talk.value("a", "PO1"), 6);
+}
+
+TEST(SerialRows, AMasterTakesNoRequestForAResponse) {
+  PROVES("RS485-02", "MDB-RS485-13");
+  for (const bool response : {true, false}) {
+    Talk talk(kMaster, master("Ml.Format = 134; Ml.Service = 1; Ml.Index = 8318; _MoviLink(Ml);"));
+    for (int n = 0; n < 2; ++n) {
+      for (int ms = 0; ms < 200 && talk.serial_heard().empty(); ++ms) talk.pass(kMs);
+      talk.pass(5 * kMs);
+      talk.serial_send(with_check((response ? "1D" : "02") + std::string(" 01 86 31 00 20 7E 00 0F 42 40")));
+      talk.pass(20 * kMs);
+      talk.serial_heard();
+    }
+    talk.pass(200 * kMs);
+    EXPECT_EQ(talk.value("m", "Ml.Result") == 0, response);
+  }
+}
+
+TEST(SerialRows, AMasterAsksTheOnlySlaveAt254) {
+  PROVES("RS485-11", "MOVLNK-05");
+  Talk talk(kMaster + on_line("a", "md60a", numbered(47)),
+            master("Ml.Address = 254; Mld.WritePar = 2500; _MoviLink(Ml);"));
+  talk.pass(300 * kMs);
+  EXPECT_EQ(talk.value("m", "Ml.Result"), 0);
+  EXPECT_EQ(talk.value("a", "P130"), 2500);
+  // 253 is the own unit, and nothing goes over the line.
+  Talk own(kMaster, master("Ml.Address = 253; Ml.Service = 1; Ml.Index = 8597; _MoviLink(Ml);"));
+  own.pass(300 * kMs);
+  EXPECT_EQ(own.value("m", "Ml.Result"), 0);
+  EXPECT_EQ(own.value("m", "Mld.ReadPar"), 9);
+  EXPECT_TRUE(own.serial_heard().empty());
+}
+
+// Management octets sent and received: prepared with the bit as it is, executed with its change.
+TEST(SerialRows, HandshakeOfAMaster) {
+  PROVES("EX-06");
+  Talk talk(kMaster + on_line("a", "md60a", numbered(1)),
+            master("Mld.WritePar = 2500; _MoviLink(Ml); Mld.WritePar = 2600; _MoviLink(Ml);"));
+  talk.pass(800 * kMs);
+  EXPECT_EQ(talk.value("a", "P130"), 2600);
+  std::string pairs;
+  for (const HeardTelegram& heard : talk.serial_heard())
+    pairs += heard.text.substr(9, 2) + (heard.text.starts_with("02") ? "/" : " ");
+  EXPECT_NE(pairs.find("32/32 72/72 72/72 32/32 "), std::string::npos) << pairs;
+}
+
 TEST(SerialRows, FormatsOfMovlnk) {
   PROVES("MOVLNK-06");
   for (const int acyclic : {0, 128})
