@@ -132,6 +132,10 @@ profibus::LinePlan profibus_paper(const PlantFile& file, const BusConfig& bus) {
     paper.stations.push_back(planned(slave, masters));
     paper.stations.back().terminated = slave.use->terminator.value_or(!given && &slave == &slaves.back());
   }
+  for (const ControlConfig& control : file.controls)
+    if (const auto* master = control.as<FmsMasterConfig>(); master != nullptr && master->bus == bus.name)
+      for (const FmsMasterConfig::Link& link : master->links)
+        for (profibus::PlannedStation& station : paper.stations) station.of_fms |= station.address == link.address;
   return paper;
 }
 

@@ -258,7 +258,7 @@ TEST(Bus, WhichProfibusOptionFitsWhere) {
                        "other.toml:5:8: error: size is on the plate of unit mc31, not of mdxb"));
 }
 
-// A hint, in the plan and in the journal.
+// A hint, in the plan and in the journal; a station that FMS alone asks needs no configuration of DP.
 TEST(Bus, WhoWearsOutAMemoryIsTold) {
   const TemporaryFolder folder;
   for (const auto& [save, told] : {std::pair("ON", true), {"OFF", false}}) {
@@ -268,6 +268,7 @@ TEST(Bus, WhoWearsOutAMemoryIsTold) {
                      save + "\"\n[[control]]\nname = \"panel\"\nkind = \"fms\"\nprofibus = \"dp\"\n[[control.slave]]\naddress = 8\n" +
                      "[[control.slave.request]]\nat = \"1s\"\nevery = \"200ms\"\nwrite = 1025\ndata = \"00 00 09 50\"\n");
     const CommandResult plan = run_ipos({"bus", "plan", "plant.toml"}, folder.path());
+    EXPECT_EQ(plan.exit_code, 0) << plan.err;
     EXPECT_EQ(contains(plan.err, "[B30]"), told) << plan.err;
     EXPECT_EQ(contains(plan.err, "panel writes object 1025 of inv every 200 ms"), told) << plan.err;
     const CommandResult run = run_ipos({"run", "plant.toml", "--for", "10ms", "--why"}, folder.path());

@@ -86,6 +86,7 @@ void check_station(const PlannedStation& s, std::vector<std::string>& found) {
   if (s.ident != type.ident)
     found.push_back(fmt::format("{}: the master expects ident {:04X}h, the unit has {:04X}h", s.name, s.ident,
                                 type.ident));
+  if (s.octets == 0 && s.of_fms) return;
   const auto all = configurations(type.accepts.set);
   if (std::none_of(all.begin(), all.end(), [&](const Configuration& c) {
         return c.octets == s.octets && c.words >= type.accepts.least && c.words <= type.accepts.most;

@@ -36,6 +36,7 @@ struct PlannedStation {
   uint8_t service_code_4 = 14;  // of component 4; matters on 31B
   uint16_t ident = 0x3100;      // as the master's configuration has it
   uint8_t octets = 6;           // in each direction
+  bool of_fms = false;          // a master of FMS asks it: it needs no configuration
   std::optional<Time> watchdog;
   const OptionType* card = nullptr;
 };

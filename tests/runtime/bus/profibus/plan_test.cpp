@@ -112,6 +112,10 @@ TEST(LinePlan, CardsOfOtherUnits) {
   station.card = &option_type(OptionKind::Gateway);
   station.ident = 0x6002;
   EXPECT_EQ(findings(plan), "") << "channel and two drives: 8 + 12";
+  station.octets = 0;
+  EXPECT_EQ(findings(plan), "inv0: 0 octets are no configuration of this unit");
+  station.of_fms = true;
+  EXPECT_EQ(findings(plan), "") << "FMS wants none";
   station.octets = 21;
   EXPECT_EQ(findings(plan), "inv0: 21 octets are no configuration of this unit");
 }
