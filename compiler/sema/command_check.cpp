@@ -11,6 +11,7 @@ void CommandCheck::operator()(const Point& point) {
     case vm::Opcode::Scom: return check_object(point);
     case vm::Opcode::Movlnk: check_movilink(point); return check_waiting(point);
     case vm::Opcode::VarInt: return check_interrupt(point);
+    case vm::Opcode::Copy: return check_copy(point);
     default: return check_waiting(point);
   }
 }
@@ -31,6 +32,30 @@ std::string CommandCheck::name_of(uint32_t number) const {
 bool CommandCheck::is_written(uint32_t number) const {
   const auto found = context_.accesses.find(number);
   return found != context_.accesses.end() && !found->second.writers.empty();
+}
+
+bool CommandCheck::stays_zero(int32_t number) const {
+  const auto at = static_cast<uint32_t>(number);
+  const Variable* variable = number < 0 ? nullptr : variable_of(at);
+  if (variable == nullptr || variable->storage != Storage::Global || at <= kLastNonVolatile || context_.raw_names.contains(at)) return false;
+  const auto found = context_.accesses.find(at);
+  if (found == context_.accesses.end()) return true;
+  for (const AccessPlace& taken : found->second.takers)
+    if (!flow_.is_read_through(taken.into)) return false;
+  return found->second.writers.empty();
+}
+
+// Variables in a row may be meant as a block, an array ends where it ends.
+void CommandCheck::check_copy(const Point& point) {
+  const auto word = [&](size_t argument) { return std::get<int32_t>(point.call.arguments[argument]); };
+  for (const size_t argument : {size_t{0}, size_t{1}}) {
+    const Reach all = reach(word(argument), static_cast<uint32_t>(word(2)));
+    if (all.beyond == nullptr || all.first->type.count == 0) continue;
+    if (Diagnostic* message = warn(Diag::DataBeyondVariable, point.expr.span,
+                                   {fmt::format("a copy of {}", word(2)), fmt::format("{}", word(2)), all.first->name,
+                                    fmt::format("{}", all.own), all.beyond->name, argument == 0 ? "overwritten" : "copied"}))
+      message->notes.push_back({all.beyond->span, "it is declared here"});
+  }
 }
 
 CommandCheck::Reach CommandCheck::reach(int32_t number, uint32_t count) const {

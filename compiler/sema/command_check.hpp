@@ -74,6 +74,8 @@ class CommandCheck {
   // waiting_command.cpp
   void check_interrupt(const Point& point);
   void check_mask(const Point& point, uint32_t first);
+  void check_source(const Point& point, uint32_t first);
+  void check_number(const Point& point, uint32_t first);
   void check_waiting(const Point& point);
   void check_lacking(const Point& point);
 
@@ -89,6 +91,9 @@ class CommandCheck {
   // the unit is not meant.
   bool is_neighbour(const Reach& reach) const;
   bool is_written(uint32_t number) const;
+  // A variable of the program that nobody writes: only telegrams and interrupts have its number, and they read it.
+  bool stays_zero(int32_t number) const;
+  void check_copy(const Point& point);
 
   // Values of a member that the program assigns.
   template <typename Refused>
@@ -110,6 +115,7 @@ class CommandCheck {
   std::set<const checked::Expr*> kept_;
   std::map<const checked::Expr*, Exchange> exchanges_;
   std::map<const checked::Expr*, Object> objects_;
+  std::optional<uint32_t> first_of_number_0_;  // structure of a variable interrupt
   std::set<uint32_t> short_watchdogs_;  // where they are started
 };
 

@@ -54,6 +54,8 @@ class ConstantFlow {
   std::span<const KnownValue> values(uint32_t number) const { return sets_.values(at(number)); }
   const KnownValue* only(uint32_t number) const { return sets_.only(at(number)); }
   const KnownValue* only_of(KnownValues::Set set) const { return sets_.only(set); }
+  // A member of a structure of orders from which the unit only reads the variable with that number.
+  bool is_read_through(uint32_t member) const { return read_only_takers_.contains(member); }
   const std::vector<Defined>& defined() const { return state_.defined; }
 
  private:

@@ -171,7 +171,8 @@ void ExpressionChecker::check_constants(const ast::Binary& node, int32_t left, i
   const auto* a = std::get_if<ast::Number>(&node.left->node);
   const auto* b = std::get_if<ast::Number>(&node.right->node);
   if (node.op == BinaryOp::Div) {
-    const bool written = a != nullptr && b != nullptr && !span.begin.in_macro() && !node.right->span.begin.in_macro();
+    const auto macro = [&](Location at) { return at.in_macro() ? context_.sources.expansion(at).macro : std::string_view(); };
+    const bool written = a != nullptr && b != nullptr && macro(span.begin) == macro(node.right->span.begin);
     if (written && left != 0 && right != 0 && left / int64_t{right} == 0)
       context_.diagnostics.report(Diag::ConstantQuotient, span, {fmt::format("{}", left), fmt::format("{}", right)});
     return;

@@ -7,12 +7,15 @@
 
 #include "compiler/sema/command_check.hpp"
 #include "compiler/sema/command_writes.hpp"
+#include "compiler/sema/copy_check.hpp"
 #include "compiler/sema/exchange_check.hpp"
 #include "compiler/sema/expressions.hpp"
+#include "compiler/sema/index_check.hpp"
 #include "compiler/sema/position_check.hpp"
 #include "compiler/sema/state_check.hpp"
 #include "compiler/sema/walk.hpp"
 #include "compiler/sema/written.hpp"
+#include "compiler/sema/timers.hpp"
 #include "stdlib/system_variables.hpp"
 
 namespace ipos::compiler {
@@ -22,9 +25,8 @@ using vm::Opcode;
 
 constexpr int32_t kTimer0 = 2;           // set int
 constexpr int32_t kStoreData = 4;        // set mem
-constexpr uint32_t kReload = stdlib::system_variable("T0_Reload");
-constexpr uint32_t kTimers[] = {stdlib::system_variable("Timer_0"), stdlib::system_variable("Timer_1"),
-                                stdlib::system_variable("Timer_2")};
+constexpr int32_t kStartTask = 1;  // set task
+constexpr uint32_t kFirstProbe = stdlib::system_variable("TpPos2_Abs"), kLastProbe = stdlib::system_variable("TpPos1_Mot");
 struct GivenCommand {
   const checked::Expr* expr;
   const checked::SystemCall* call;
@@ -50,6 +52,7 @@ class ProgramCheck {
     check_started();
     check_timer_interrupt();
     for (const uint32_t timer : kTimers) check_timer(timer);
+    check_probe();
     check_reserved();
     check_nothing_kept();
     check_results();
@@ -94,14 +97,56 @@ class ProgramCheck {
 
   void check_timer_interrupt() {
     for (const ProgramRoot& root : roots_.roots)
-      if (root.start == Opcode::SetInt && root.keyword == kTimer0 && !may_be_written(kReload) && !may_be_written(kTimers[0]))
+      if (root.start == Opcode::SetInt && root.keyword == kTimer0 && is_never_set(kReload) && is_never_set(kTimers[0]))
         context_.diagnostics.report(Diag::TimerNotSet, root.place, {context_.program.functions[root.function].name});
+  }
+
+  const AccessPlace* reader_of(uint32_t number) const {
+    const Access* all = access(number);
+    if (all == nullptr) return nullptr;
+    const auto found = std::find_if(all->readers.begin(), all->readers.end(), [this](const AccessPlace& one) { return roots_.alive[one.function]; });
+    return found == all->readers.end() ? nullptr : &*found;
+  }
+
+  // The program gives it constants at most that are no time.
+  bool is_never_set(uint32_t number) const {
+    const Access* all = access(number);
+    if (all == nullptr) return true;
+    if (!all->takers.empty()) return false;
+    size_t writes = 0;
+    for (size_t n = 0; n < context_.contents.size(); ++n)
+      for (const checked::Expr* expr : context_.contents[n].expressions) {
+        const auto* node = std::get_if<checked::Assign>(&expr->node);
+        const bool here = node != nullptr && !node->op && node->target.offset == nullptr && static_cast<uint32_t>(node->target.number) == number;
+        const int32_t* constant = here ? constant_value(node->value) : nullptr;
+        if (constant == nullptr || *constant > 0) {
+          Numbers one;
+          Written::add_own(*expr, one);
+          if (one.test(number)) return false;
+        } else {
+          ++writes;
+        }
+      }
+    return writes > 0 || all->writers.empty();
+  }
+
+  void check_probe() {
+    if (find([](const GivenCommand& one) { return one.call->opcode == Opcode::TouchProbe; }) != nullptr) return;
+    for (uint32_t number = kFirstProbe; number <= kLastProbe; ++number)
+      if (const AccessPlace* reader = reader_of(number))
+        context_.diagnostics.report(Diag::ProbeOff, reader->span,
+                                    {std::string(stdlib::find_system_variable(static_cast<uint16_t>(number))->compiler_name)});
   }
 
   // By tasks: a routine may well set again what its own task waits for.
   void check_timer(uint32_t timer) {
     const Access* all = access(timer);
     if (all == nullptr) return;
+    const AccessPlace* reader = reader_of(timer);
+    const bool reloaded = timer == kTimers[0] && may_be_written(kReload);
+    if (reader != nullptr && !may_be_written(timer) && !reloaded)
+      context_.diagnostics.report(Diag::NeverWritten, reader->span,
+                                  {std::string(stdlib::find_system_variable(static_cast<uint16_t>(timer))->compiler_name), "read"});
     const AccessPlace* first = nullptr;
     int task = 0;
     for (const AccessPlace& writer : all->writers)
@@ -213,13 +258,46 @@ class ProgramCheck {
 
   // What an endless loop does in each turn, whatever happens.
   void check_wear(const checked::Stmt& stmt) {
-    if (const auto* node = std::get_if<checked::While>(&stmt.node); node != nullptr && always(node->condition))
-      each_turn(node->body);
-    if (const auto* node = std::get_if<checked::DoWhile>(&stmt.node); node != nullptr && always(node->condition))
-      each_turn(node->body);
+    checked::StmtPtr body = nullptr;
+    if (const auto* node = std::get_if<checked::While>(&stmt.node); node != nullptr && always(node->condition)) body = node->body;
+    if (const auto* node = std::get_if<checked::DoWhile>(&stmt.node); node != nullptr && always(node->condition)) body = node->body;
     if (const auto* node = std::get_if<checked::For>(&stmt.node);
         node != nullptr && (node->condition == nullptr || always(node->condition)))
-      each_turn(node->body);
+      body = node->body;
+    if (body == nullptr) return;
+    turn_waits_ = has_loop(body);
+    each_turn(body);
+  }
+
+  // A loop within, in which the turn may wait for something.
+  bool has_loop(const checked::StmtPtr& stmt) const {
+    bool found = false;
+    checked::walk_statements(stmt, [&](const checked::Stmt& inner) {
+      found = found || std::holds_alternative<checked::While>(inner.node) || std::holds_alternative<checked::DoWhile>(inner.node) ||
+              std::holds_alternative<checked::For>(inner.node);
+    });
+    if (!found && stmt != nullptr)
+      checked::walk(*stmt, [&](const checked::Expr& expr) {
+        found = found || std::holds_alternative<checked::Call>(expr.node);
+      });
+    return found;
+  }
+
+  bool is_endless(const checked::Stmt& stmt) const {
+    if (const auto* node = std::get_if<checked::Block>(&stmt.node))
+      return std::any_of(node->body.begin(), node->body.end(), [&](const checked::StmtPtr& part) { return is_endless(*part); });
+    if (const auto* node = std::get_if<checked::While>(&stmt.node)) return always(node->condition);
+    if (const auto* node = std::get_if<checked::For>(&stmt.node)) return node->condition == nullptr || always(node->condition);
+    return false;
+  }
+
+  // A task that never ends by itself, in a turn that waits for nothing.
+  void check_restart(const checked::Expr& expr, const checked::SystemCall& call) {
+    const bool starts = (call.opcode == Opcode::Task || call.opcode == Opcode::Task2) && GivenCommand{&expr, &call}.word(0) == kStartTask;
+    if (!starts || !entered_.empty() || turn_waits_) return;
+    const size_t task = std::get<checked::FunctionRef>(call.arguments.back()).function;
+    if (is_endless(*context_.program.functions[task].body) && told_.insert(&expr).second)
+      context_.diagnostics.report(Diag::TaskRestarted, expr.span, {context_.program.functions[task].name});
   }
 
   // False: what follows is not always reached.
@@ -253,6 +331,7 @@ class ProgramCheck {
           .report(Diag::ObjectTwice, expr.span,
                   {fmt::format("{}", *object->second.number), object->second.receive ? "received" : "sent"})
           .notes.push_back({{}, "it stands in an endless loop, whose first turn sets it up"});
+    check_restart(expr, *call);
     const bool stores = call->opcode == Opcode::Memorize && GivenCommand{&expr, call}.word(0) != 0 && GivenCommand{&expr, call}.word(0) != 2;
     if ((stores || kept_.contains(&expr)) && told_.insert(&expr).second)
       context_.diagnostics.report(Diag::MemoryWear, expr.span,
@@ -268,6 +347,7 @@ class ProgramCheck {
   Numbers written_;
   std::set<uint32_t> unread_;
   std::set<size_t> entered_;
+  bool turn_waits_ = false;
   std::set<const checked::Expr*> told_;
 };
 
@@ -291,6 +371,8 @@ void check_commands(Context& context, const ProgramRoots& roots) {
   check_positions(context, roots);
   const Written written(context);
   check_program(context, roots, check, written);
+  check_copies(context, roots, written);
+  check_indexes(context, roots, written);
   check_states(context, roots, written);
 }
 

@@ -81,6 +81,11 @@ void CommandCheck::check_object_data(const Point& point, uint32_t first, bool re
     warn(Diag::OwnDefinition, place(pointer, point), {receive ? "received into" : "sent from", name_of(first)});
     return;
   }
+  if (!receive && bytes > 0) {
+    bool never = true;
+    for (uint32_t n = 0; n < count; ++n) never = never && stays_zero(pointer.value + static_cast<int32_t>(n));
+    if (never) warn(Diag::NeverWritten, place(pointer, point), {name_of(data), "sent"});
+  }
   const Reach all = reach(pointer.value, count);
   if (!(receive ? is_neighbour(all) : all.beyond != nullptr && !all.first->type.scalar())) return;
   Diagnostic* message = warn(Diag::DataBeyondVariable, place(pointer, point),

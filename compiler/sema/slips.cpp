@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "compiler/ast/print.hpp"
@@ -17,32 +18,52 @@ namespace {
 
 using ast::BinaryOp;
 
-// The same place or value, by its text.
-bool same(const ast::Expr& a, const ast::Expr& b) {
-  if (a.node.index() != b.node.index() || a.span.begin.in_macro() || b.span.begin.in_macro()) return false;
+// The same place or value, by its text. With `macros`, what the same macro gives is the same, too.
+bool same(const ast::Expr& a, const ast::Expr& b, const SourceMap* macros = nullptr) {
+  if (a.node.index() != b.node.index() || a.span.begin.in_macro() != b.span.begin.in_macro()) return false;
+  if (a.span.begin.in_macro() &&
+      (macros == nullptr || macros->expansion(a.span.begin).macro != macros->expansion(b.span.begin).macro))
+    return false;
   return std::visit(
       ast::Overloaded{
           [&](const ast::Number& left) { return left.value == std::get<ast::Number>(b.node).value; },
           [&](const ast::Name& left) { return left.text == std::get<ast::Name>(b.node).text; },
           [&](const ast::Member& left) {
             const auto& right = std::get<ast::Member>(b.node);
-            return left.member.text == right.member.text && same(*left.base, *right.base);
+            return left.member.text == right.member.text && same(*left.base, *right.base, macros);
           },
           [&](const ast::Index& left) {
             const auto& right = std::get<ast::Index>(b.node);
-            return same(*left.base, *right.base) && same(*left.index, *right.index);
+            return same(*left.base, *right.base, macros) && same(*left.index, *right.index, macros);
           },
-          [&](const ast::Deref& left) { return same(*left.number, *std::get<ast::Deref>(b.node).number); },
+          [&](const ast::Deref& left) { return same(*left.number, *std::get<ast::Deref>(b.node).number, macros); },
           [&](const ast::Unary& left) {
             const auto& right = std::get<ast::Unary>(b.node);
-            return left.op == right.op && same(*left.operand, *right.operand);
+            return left.op == right.op && same(*left.operand, *right.operand, macros);
           },
           [&](const ast::Binary& left) {
             const auto& right = std::get<ast::Binary>(b.node);
-            return left.op == right.op && same(*left.left, *right.left) && same(*left.right, *right.right);
+            return left.op == right.op && same(*left.left, *right.left, macros) && same(*left.right, *right.right, macros);
           },
           [](const auto&) { return false; }},
       a.node);
+}
+
+// Statements that do the same: assignments, alone or in a block.
+bool same(const ast::Stmt& a, const ast::Stmt& b) {
+  const auto* left = std::get_if<ast::Block>(&a.node);
+  const auto* right = std::get_if<ast::Block>(&b.node);
+  if (left != nullptr && left->body.size() == 1) return same(*left->body.front(), b);
+  if (right != nullptr && right->body.size() == 1) return same(a, *right->body.front());
+  if (left != nullptr && right != nullptr)
+    return !left->body.empty() && std::equal(left->body.begin(), left->body.end(), right->body.begin(), right->body.end(),
+                                             [](const ast::Stmt* one, const ast::Stmt* other) { return same(*one, *other); });
+  const auto* one = std::get_if<ast::ExprStmt>(&a.node);
+  const auto* other = std::get_if<ast::ExprStmt>(&b.node);
+  const auto* mine = one == nullptr ? nullptr : std::get_if<ast::Assign>(&one->expr->node);
+  const auto* theirs = other == nullptr ? nullptr : std::get_if<ast::Assign>(&other->expr->node);
+  return mine != nullptr && theirs != nullptr && mine->op == theirs->op && same(*mine->target, *theirs->target) &&
+         same(*mine->value, *theirs->value);
 }
 
 bool is_constant(const ast::Expr& expr) {
@@ -83,7 +104,7 @@ class Slips {
   }
 
   void operator()(const ast::Stmt& stmt) {
-    if (const auto* node = std::get_if<ast::If>(&stmt.node)) check_else(stmt, *node);
+    if (const auto* node = std::get_if<ast::If>(&stmt.node)) check_else(stmt, *node), check_branches(*node);
     if (const auto* node = std::get_if<ast::Block>(&stmt.node))
       for (size_t n = 0; n + 1 < node->body.size(); ++n) check_next(*node->body[n], *node->body[n + 1]);
   }
@@ -165,6 +186,20 @@ class Slips {
       }
       inner = next->then;
     }
+  }
+
+  // `if (a) x; else if (a) y;` and `if (a) x; else x;`
+  void check_branches(const ast::If& node) {
+    if (node.otherwise == nullptr) return;
+    if (same(*node.then, *node.otherwise))
+      diagnostics_.report(Diag::SameOperands, node.otherwise->span, {"else", "the same, whatever the condition is"});
+    const auto* next = std::get_if<ast::If>(&node.otherwise->node);
+    for (; next != nullptr; next = next->otherwise == nullptr ? nullptr : std::get_if<ast::If>(&next->otherwise->node))
+      if (same(*node.condition, *next->condition, &sources_)) {
+        diagnostics_.report(Diag::DecidedCondition, next->condition->span, {"never"})
+            .notes.push_back({node.condition->span, "it stands here, too, and is not true any more behind that 'else'"});
+        return;
+      }
   }
 
   struct Body {

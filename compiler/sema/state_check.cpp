@@ -39,6 +39,11 @@ class StateCheck {
       if (number < kMaxNumbers && !all.takers.empty()) own_.reset(number);
     for (const auto& [number, span] : context.raw_names)
       if (number < kMaxNumbers) own_.reset(number);
+    for (const Contents& contents : context.contents)
+      for (const checked::Expr* expr : contents.calls)
+        if (const auto* call = std::get_if<checked::SystemCall>(&expr->node); call != nullptr && call->opcode == vm::Opcode::Scom)
+          if (const OrderBlock orders = order_block(*call); orders.result && std::get<int32_t>(call->arguments[0]) == kTransmitAcyclic)
+            own_.reset(orders.first + orders.size - 1);  // its result changes when the telegram is sent
     for (size_t root = 0; root < by_root_.size(); ++root) by_root_[root] = written_.of(roots.roots[root].function);
   }
 

@@ -116,12 +116,26 @@ class VariableUse {
     const auto* name = std::get_if<ast::Name>(&word.node);
     const auto* number = std::get_if<ast::Number>(&mask.node);
     uint32_t which = 0;
+    if (name != nullptr && number != nullptr && raw_number(name->text, which) && which >= stdlib::kFirstSystemVariable) check_bit_name(which, *number, mask.span);
     if (name == nullptr || number == nullptr || number->hex || !raw_number(name->text, which)) return;
     for (const NamedBits& row : kNamedBits) {
       if (row.number != which || std::find(row.bits.begin(), row.bits.end(), number->value) == row.bits.end()) continue;
       const std::string text(stdlib::find_system_variable(static_cast<uint16_t>(which))->compiler_name);
       const std::string bit = fmt::format("{}", number->value);
       context_.diagnostics.report(Diag::BitNumber, mask.span, {bit, text, bit});
+    }
+  }
+
+  // H483 & BIT_DI03: the names of the standard headers are numbers of bits.
+  void check_bit_name(uint32_t which, const ast::Number& number, Span span) {
+    if (!span.begin.in_macro()) return;
+    const std::string_view macro = context_.sources.expansion(span.begin).macro;
+    for (const stdlib::HeaderName& row : stdlib::header_names()) {
+      if (row.name != macro || !macro.starts_with("BIT_") || row.text != fmt::format("{}", number.value)) continue;
+      const auto* variable = stdlib::find_system_variable(static_cast<uint16_t>(which));
+      if (variable != nullptr)
+        context_.diagnostics.report(Diag::BitNumber, span, {std::string(macro), std::string(variable->compiler_name), std::string(macro)});
+      return;
     }
   }
 

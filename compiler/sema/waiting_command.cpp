@@ -42,6 +42,18 @@ bool is_travel(Opcode opcode) {
   }
 }
 
+// Whether the condition holds while the variable is 0.
+bool holds_at_zero(int32_t mode, int32_t compare) {
+  switch (mode) {
+    case 4: return compare == 0;  // VI_EQ
+    case 5: return compare != 0;  // VI_NE
+    case 6: return compare <= 0;  // VI_GE
+    case 7: return compare >= 0;  // VI_LE
+    case 9: return true;          // VI_NONE
+    default: return false;
+  }
+}
+
 }  // namespace
 
 void CommandCheck::check_interrupt(const Point& point) {
@@ -60,6 +72,8 @@ void CommandCheck::check_interrupt(const Point& point) {
          {fmt::format("Priority of '{}' is never set, and 0 switches the interrupt off; 1 to 10 switch it on",
                       name_of(first))});
   check_mask(point, first);
+  check_source(point, first);
+  check_number(point, first);
   const Opcode start = control->value == 1 ? Opcode::Task2 : Opcode::Task;
   for (const ProgramRoot& root : roots_.roots)
     if (root.start == start) return;
@@ -78,6 +92,27 @@ void CommandCheck::check_mask(const Point& point, uint32_t first) {
   warn(Diag::InterruptOff, place(*mask, point),
        {fmt::format("CompareVar of '{}' {}, a mask without a bit; bit n is 1 << n", name_of(first),
                     mask->assigned() ? "is 0" : "is never set, so it is 0")});
+}
+
+// A variable that stays 0.
+void CommandCheck::check_source(const Point& point, uint32_t first) {
+  const KnownValue* source = flow_.only(first + VarintMember::SrcVar);
+  const KnownValue* mode = flow_.only(first + VarintMember::Mode);
+  const KnownValue* compare = flow_.only(first + VarintMember::CompareVar);
+  if (source == nullptr || mode == nullptr || compare == nullptr || !source->assigned() || holds_at_zero(mode->value, compare->value)) return;
+  if (stays_zero(source->value))
+    warn(Diag::InterruptOff, place(*source, point), {fmt::format("nothing writes '{}'", name_of(static_cast<uint32_t>(source->value)))});
+}
+
+// Two structures are two interrupts, but a number that is never set is 0 in each.
+void CommandCheck::check_number(const Point& point, uint32_t first) {
+  const KnownValue* number = flow_.only(first + VarintMember::IntNum);
+  if (number == nullptr || number->value != 0) return;
+  if (!number->assigned() && first_of_number_0_ && *first_of_number_0_ != first)
+    warn(Diag::InterruptValue, point.expr.span,
+         {fmt::format("IntNum of '{}' is never set, so it is 0 as that of '{}', whose interrupt it replaces", name_of(first),
+                      name_of(*first_of_number_0_))});
+  if (!first_of_number_0_) first_of_number_0_ = first;
 }
 
 void CommandCheck::check_waiting(const Point& point) {

@@ -28,7 +28,7 @@ std::optional<size_t> called_by(const checked::Expr& expr) {
 // Each function by itself, then what those write that it calls, until nothing is new: functions may call each other in a circle.
 Written::Written(const Context& context) : of_(context.contents.size()) {
   for (size_t n = 0; n < of_.size(); ++n)
-    for (const checked::Expr* expr : context.contents[n].expressions) add_one(*expr, of_[n]);
+    for (const checked::Expr* expr : context.contents[n].expressions) add_own(*expr, of_[n]);
   for (bool changed = true; changed;) {
     changed = false;
     for (size_t n = of_.size(); n-- > 0;) {
@@ -40,8 +40,7 @@ Written::Written(const Context& context) : of_(context.contents.size()) {
   }
 }
 
-// Without what is called.
-void Written::add_one(const checked::Expr& expr, Numbers& numbers) {
+void Written::add_own(const checked::Expr& expr, Numbers& numbers) {
   if (const auto* node = std::get_if<checked::Step>(&expr.node)) mark(numbers, node->place, node->within);
   if (const auto* node = std::get_if<checked::Assign>(&expr.node)) mark(numbers, node->target, node->within);
   if (const auto* node = std::get_if<checked::CopyBlock>(&expr.node)) mark(numbers, node->target, node->count);
@@ -50,7 +49,7 @@ void Written::add_one(const checked::Expr& expr, Numbers& numbers) {
 }
 
 void Written::add_whole(const checked::Expr& expr, Numbers& numbers) const {
-  add_one(expr, numbers);
+  add_own(expr, numbers);
   if (const auto called = called_by(expr)) numbers |= of(*called);
 }
 

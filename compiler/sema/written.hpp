@@ -20,8 +20,10 @@ class Written {
   void add(const checked::Expr& expr, Numbers& numbers) const;
   const Numbers& of(size_t function) const { return of_[function]; }
 
+  // Without what is within it or called.
+  static void add_own(const checked::Expr& expr, Numbers& numbers);
+
  private:
-  static void add_one(const checked::Expr& expr, Numbers& numbers);
   void add_whole(const checked::Expr& expr, Numbers& numbers) const;
 
   std::vector<Numbers> of_;

@@ -209,11 +209,11 @@ main() { a = H483; b = H482;
   H1 = c; })"},
     {"Divfirst", People::C, 2, "0", R"(long a;
 main() { a = H483; a = a * (10 / 4096); H1 = a; })"},
-    {"Loopbeyond", People::C, 3, nullptr, R"(long a[4], i;
+    {"Loopbeyond", People::C, 3, "element 3", R"(long a[4], i;
 main() {
   for (i = 0; i <= 4; i++) a[i] = 0;
   H1 = a[0]; })"},
-    {"Equalbranches", People::C, 3, nullptr, R"(long a, b;
+    {"Equalbranches", People::C, 3, "whatever the condition is", R"(long a, b;
 main() { a = H483;
   if (a > 5) b = 1; else b = 1;
   H1 = b; })"},
