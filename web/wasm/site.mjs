@@ -4,6 +4,7 @@
 import { execFileSync } from "node:child_process";
 import { copyFileSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
+import { bytesOfText, textOf } from "../src/alone/text_bytes.mjs";
 
 const [page_file, worker_file, ipos_folder, out] = process.argv.slice(2);
 const most_bytes = 2_500_000; // of ipos.html
@@ -22,26 +23,6 @@ function packed(bytes) {
 const page = readFileSync(page_file, "utf8");
 const script = `${readFileSync(join(ipos_folder, "ipos.js"), "utf8")}\n${readFileSync(worker_file, "utf8")}`;
 
-// 13 bits in two of 91 characters: all from ! to ~ but ", < and \\. web/src/alone/packed.ts reads it.
-const digits = [...Array(94).keys()].map((n) => String.fromCharCode(33 + n)).filter((one) => !'"<\\'.includes(one));
-
-function textOf(bytes) {
-  let text = "";
-  let held = 0;
-  let bits = 0;
-  const put = () => (text += digits[Math.floor((held & 8191) / 91)] + digits[(held & 8191) % 91]);
-  for (const byte of bytes) {
-    held |= byte << bits;
-    bits += 8;
-    if (bits < 13) continue;
-    put();
-    held >>>= 13;
-    bits -= 13;
-  }
-  if (bits > 0) put();
-  return text;
-}
-
 function element(id, bytes) {
   const small = packed(bytes);
   return `<script type="text/plain" id="${id}" data-bytes="${small.length}">${textOf(small)}</script>\n`;
@@ -56,9 +37,10 @@ function pageWith(wasm_element, end) {
 }
 
 // In the one file the page's own script is packed, too: this one unpacks and begins it.
-async function begin() {
-  const text = atob(document.getElementById("ipos-page").textContent);
-  const stream = new Blob([Uint8Array.from(text, (c) => c.charCodeAt(0))]).stream().pipeThrough(new DecompressionStream("gzip"));
+async function begin(bytesOfText) {
+  const page = document.getElementById("ipos-page");
+  const bytes = bytesOfText(page.textContent, Number(page.dataset.bytes));
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
   const script = document.createElement("script");
   script.textContent = await new Response(stream).text();
   document.body.append(script);
@@ -66,7 +48,7 @@ async function begin() {
 const rest = page.slice(place);
 const own = rest.slice(rest.indexOf("<script>") + "<script>".length, rest.lastIndexOf("</script>"));
 
-const alone = pageWith(element("ipos-wasm", readFileSync(join(ipos_folder, "ipos.wasm"))), rest.replace(own, () => `(${begin})()`).replace("<script>", () => `<script type="text/plain" id="ipos-page">${packed(own).toString("base64")}</script>\n<script>`));
+const alone = pageWith(element("ipos-wasm", readFileSync(join(ipos_folder, "ipos.wasm"))), rest.replace(own, () => `(${begin})(${bytesOfText})`).replace("<script>", () => `${element("ipos-page", own)}<script>`));
 writeFileSync(join(out, "ipos.html"), alone);
 writeFileSync(
   join(out, "site/index.html"),

@@ -1,6 +1,7 @@
 // What the document brings along when no server is behind it: the worker's script and ipos as WebAssembly, each packed by gzip.
-// In ipos.html both stand in elements of the document as text, 13 bits in two characters (web/wasm/site.mjs), which is 8 %
-// shorter than base64; in the site the second is a file beside it.
+// In ipos.html both stand in elements of the document as text (text_bytes.mjs); in the site the second is a file beside it.
+
+import { bytesOfText } from "./text_bytes.mjs";
 
 const script_id = "ipos-worker";
 const wasm_id = "ipos-wasm";
@@ -15,26 +16,6 @@ export function bytesOf(base64: string): Uint8Array<ArrayBuffer> {
   const text = atob(base64);
   const bytes = new Uint8Array(text.length);
   for (let at = 0; at < text.length; ++at) bytes[at] = text.charCodeAt(at);
-  return bytes;
-}
-
-// Characters from ! to ~ but ", < and \\ stand for 0 to 90.
-function bytesOfText(text: string, count: number): Uint8Array<ArrayBuffer> {
-  const digit = (at: number) => {
-    const code = text.charCodeAt(at);
-    return code - 33 - Number(code > 34) - Number(code > 60) - Number(code > 92);
-  };
-  const bytes = new Uint8Array(count);
-  let held = 0;
-  let bits = 0;
-  let next = 0;
-  for (let at = 0; next < count; at += 2) {
-    held |= (digit(at) * 91 + digit(at + 1)) << bits;
-    for (bits += 13; bits >= 8 && next < count; bits -= 8) {
-      bytes[next++] = held & 255;
-      held >>>= 8;
-    }
-  }
   return bytes;
 }
 
