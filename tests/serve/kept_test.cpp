@@ -173,7 +173,7 @@ TEST(SourceOnThePage, IsWhatWasCompiled) {
   const std::string path = input.programs[0]->files[0];
   EXPECT_EQ(tools::source_line(path, 1), "#include \"part.h\"");
   EXPECT_EQ(tools::source_line(path, 2), "main() { while (1) H1 = PART; }");
-  for (const size_t none : {0, 3, 4, 1000}) EXPECT_EQ(tools::source_line(path, none), "");
+  for (const size_t none : {0U, 3U, 4U, 1000U}) EXPECT_EQ(tools::source_line(path, none), "");
   EXPECT_TRUE(tools::source_has_changed(path));
   // Time that begins anew shows no other text either: nothing is compiled again.
   page.ask({{"do", "restart"}});

@@ -88,7 +88,7 @@ TEST(ScopeMemory, ExtremesAreThoseOfThisTimeWhereTimeWentBackIntoABlock) {
   });
   memory.use(memory.columns());  // as load() does
   record(memory, 100, 300);
-  for (const uint64_t begin : {0, 64, 65, 99, 100, 128})
+  for (const uint64_t begin : {0U, 64U, 65U, 99U, 100U, 128U})
     EXPECT_EQ(memory.extremes(0, begin, 300), looked_for(begin, 300)) << begin;
 }
 
@@ -122,7 +122,7 @@ TEST(ScopeMemory, ChannelsThatStayKeepWhatTheyHave) {
   });
   memory.filled(0, 5);
   EXPECT_EQ(memory.first(0), 5U);
-  for (const uint64_t begin : {5, 64, 128, 190, 192, 199})
+  for (const uint64_t begin : {5U, 64U, 128U, 190U, 192U, 199U})
     EXPECT_EQ(memory.extremes(0, begin, 290), looked_for(begin, 290)) << begin;
   EXPECT_EQ(memory.extremes(1, 0, 290), (Extremes{-looked_for(0, 290).second, -looked_for(0, 290).first}));
 }

@@ -58,7 +58,7 @@ TEST_F(StateFolder, WhatOthersCouldHaveWrittenIsNotBelieved) {
   EXPECT_FALSE(read_state("pipe")) << "and it does not wait for somebody who writes";
   // 512 KiB are read (ours). What is longer is not written, so that nothing is kept that would not come back; a file that
   // somebody else has made so long is not read.
-  for (const size_t size : {524'287, 524'288, 524'289, 600'000}) {
+  for (const size_t size : {524'287U, 524'288U, 524'289U, 600'000U}) {
     const std::string text(size, 'x');
     ASSERT_TRUE(write_state("large", "small"));
     EXPECT_EQ(write_state("large", text), size <= 524'288) << size;

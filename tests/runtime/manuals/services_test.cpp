@@ -52,7 +52,8 @@ class Asked {
   }
   static Reply reply_of(const std::string& channel) {
     const Bytes bytes = bytes_of(channel);
-    const uint32_t data = static_cast<uint32_t>(bytes[4]) << 24 | bytes[5] << 16 | bytes[6] << 8 | bytes[7];
+    uint32_t data = 0;
+    for (size_t n = 4; n < 8; ++n) data = data << 8 | bytes[n];
     return (bytes[0] & 0x80) != 0 ? Reply{data, 0} : Reply{kOk, static_cast<int32_t>(data)};
   }
   Reply over_sbus(const std::string& channel) {
@@ -88,7 +89,7 @@ TEST(ServiceRows, EveryParameterEveryServiceEveryLimit) {
     Asked asked(
         unit.unit);  // no terminal is closed: MOVIDRIVE is inhibited, MOVITRAC 07 has no output stage on
     for (const auto& [index, p] : listed(unit.files, unit.option_cards)) {
-      const auto where = [&](int service, int64_t value) {
+      const auto where = [&, index = index](int service, int64_t value) {
         return std::string(unit.unit) + " index " + std::to_string(index) + " service " +
                std::to_string(service) + " value " + std::to_string(value);
       };
