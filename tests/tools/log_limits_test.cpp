@@ -221,7 +221,7 @@ TEST(LogLimits, PackedLogsThatWereCutOff) {
     EXPECT_TRUE(std::equal(got.can.begin(), got.can.end(), whole.can.begin())) << size << ": as they were";
   }
   EXPECT_EQ(taken(packed.substr(0, packed.size() - 9)).can.size(), 5'000U) << "only its checksum is missing";
-  for (const size_t size : {2, 9, 12}) {
+  for (const size_t size : {2U, 9U, 12U}) {
     const Taken got = taken(packed.substr(0, size));
     EXPECT_EQ(got.wrong.size(), 1U) << size;
     EXPECT_TRUE(got.can.empty());

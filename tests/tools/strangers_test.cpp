@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // What a text of a stranger may have in it; in a file name as it is, in TOML by its escapes.
-constexpr const char* kBytes[] = {"\x1b]0;pwn\x07\x1b[2J", "\nipos: error: faked", "\r::error::faked", "\x07\x08\x7f", "\x9b" "31m"};
+constexpr const char* kBytes[] = {"\x1b]0;pwn\x07\x1b[2J", "\nipos: error: faked", "\r::error::faked", "\x07\x08\x7f", ("\x9b" "31m")};
 constexpr const char* kEscapes[] = {"\\u001b]0;pwn\\u0007\\u001b[2J", "\\nipos: error: faked", "\\r::error::faked",
                                     "\\u0007\\b\\u007f", "\\u009b31m"};
 

@@ -29,8 +29,8 @@ inline constexpr const char* kTravels[] = {
     "_GoAbs(GO_WAIT, K * 131); n = n + 1; _GoAbs(GO_WAIT, L * -700);",
     "_GoRel(GO_WAIT, K * 61); _Wait(K); if (n > L) { n = 0; _GoAbs(GO_WAIT, 0); } n = n + 1;",
     "c = c + 1; if (c > K * 4) { c = 0; _GoRel(GO_NOWAIT, L * 1777 - 8000); }",
-    "if (H511 > K * 50) _GoAbs(GO_NOWAIT, K * -50); if (H511 <= K * -50) _GoAbs(GO_NOWAIT, K * 51); "
-    "if (H492 == 0) _GoAbs(GO_NOWAIT, K * 51);",
+    ("if (H511 > K * 50) _GoAbs(GO_NOWAIT, K * -50); if (H511 <= K * -50) _GoAbs(GO_NOWAIT, K * 51); "
+     "if (H492 == 0) _GoAbs(GO_NOWAIT, K * 51);"),
     "H492 = K * 60; while (!(H473 & 0x80000)) n = n + 1; H492 = L * -900; while (!(H473 & 0x80000)) m = m + L;",
     "_GoAbs(GO_NOWAIT, K * 300); _Wait(K * 3); _AxisStop(AS_PSTOP); _Wait(L * 40); _GoAbs(GO_NOWAIT, 0); _Wait(K * 5);",
     "_GoAbs(GO_NOWAIT, K * 400); _Wait(K * 4); _AxisStop(AS_RSTOP); _Wait(L * 20); _AxisStop(AS_ENABLE); _Wait(K);",

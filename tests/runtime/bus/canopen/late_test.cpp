@@ -33,8 +33,7 @@ struct Frames final : runtime::CanObserver {
 const char* const kPrograms[] = {
     "main() { while (1) { } }",
     "long a; main() { while (1) { a = a * 5 + 1; } }",
-    "#include <const.h>\nSSPIDATA3 pi; long n; main() { while (1) { _Wait(37); n++; pi.PI3 = n; "
-    "_SetSys(SS_PIDATA, pi); } }",
+    "#include <const.h>\nSSPIDATA3 pi; long n; main() { while (1) { _Wait(37); n++; pi.PI3 = n; _SetSys(SS_PIDATA, pi); } }",
     "#include <constb.h>\nlong n; main() { while (1) { _Wait(7); n = n + 3; } }",
     "#include <constb.h>\nlong n, z; main() { _Wait(400); n = n / z; }",
     "#include <constb.h>\nlong n; main() { H488 = 300; while (1) { if (H488 == 0) { H488 = 300; n++; } } }",
