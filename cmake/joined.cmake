@@ -2,8 +2,8 @@
 # a build without the optimiser goes into headers and templates that each layer would read and make again. All other builds
 # compile each layer by itself and so keep which folders it sees; here the layers are names for the whole.
 #
-# The layers are of one CMakeLists.txt, which calls this at its end. Names of their anonymous namespaces differ.
-# g++ needs up to 2 GB of memory for one, so no more are compiled at once than the machine has memory for.
+# The layers are of one CMakeLists.txt, which calls this at its end. Names of their anonymous namespaces differ. g++ needs up to 2 GB
+# of memory for a joined source, so no more are compiled at once than the machine has memory for.
 cmake_host_system_information(RESULT memory QUERY TOTAL_PHYSICAL_MEMORY)  # MiB
 math(EXPR at_once "(${memory} + 1024) / 2560")
 if(at_once LESS 1)

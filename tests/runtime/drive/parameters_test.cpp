@@ -6,6 +6,7 @@
 #include "runtime/drive/drive.hpp"
 #include "tests/harness/proves.hpp"
 #include "tests/runtime/drive/drive_rig.hpp"
+#include "tests/runtime/drive/service_rules.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -63,17 +64,7 @@ TEST_F(Md60a, CountersSurviveDisplaysDoNot) {
 
 TEST_F(Md60a, PrintedDefaultsAndLimits) {
   PROVES("PAR-32", "PAR-31", "PAR-30", "PAR-35", "PAR-34");
-  const struct {
-    uint16_t index;
-    int32_t default_value, minimum, maximum;
-  } serial[] = {{8597, 0, 0, 99},         {8598, 100, 100, 199},  {8599, 0, 0, 650000}, {8600, 0, 0, 63},
-                {8601, 0, 0, 63},         {8602, 100, 0, 650000}, {8603, 2, 0, 3},      {8604, 0, 0, 2047000},
-                {8732, 1000, 0, 2047000}, {8606, 500, 0, 650000}, {8609, 3, 0, 7},      {8610, 4, 0, 7},
-                {8611, 3, 0, 7},          {8612, 7, 0, 7},        {8613, 3, 0, 7},      {8616, 0, 0, 7},
-                {8615, 3, 0, 7},          {8304, 9, 0, 12},       {8305, 1, 0, 12},     {8306, 0, 0, 12},
-                {8307, 6, 0, 11},         {8308, 1, 0, 11},       {8309, 2, 0, 11},     {8461, 0, 0, 10},
-                {8462, 0, 0, 3}};
-  for (const auto& row : serial) {
+  for (const PrintedRow& row : kPrintedRows) {
     EXPECT_EQ(ask(kRead, row.index), row.default_value) << row.index;
     EXPECT_EQ(ask(kDefault, row.index), row.default_value) << row.index;
     EXPECT_EQ(ask(ParameterService::ReadMinimum, row.index), row.minimum) << row.index;

@@ -131,21 +131,14 @@ TEST(ServicesSweep, AttributesWalkTheList) {
 // All 65536 indices with each read service: a value, or 10h outside the areas, or 11h inside.
 TEST(ServicesSweep, EveryIndex) {
   PROVES("PAR-07", "PAR-15", "M07-PAR-16");
-  struct Area {
-    int first, count;
-  };
   for (const UnitLists& unit : kUnits) {
     const stdlib::UnitType& type = tests::unit(unit.unit);
-    const bool m07 = type.family == stdlib::Family::Movitrac07;
     const auto list = tests::listed(unit.files, unit.option_cards);
-    const int variables = std::string(unit.unit) == "mdxb" ? 1024 : 512;
-    std::vector<Area> areas = {{11000, variables}, {16000, m07 ? 1024 : 2048}};
-    if (!m07) areas.insert(areas.end(), {{8300, 700}, {10000, 100}, {10300, 40}, {10600, 40}, {20000, 513}});
+    const IndexAreas areas = index_areas(unit);
     const ParameterStore fresh(type);
     ParameterStore store = fresh;
     for (int index = 0; index <= 0xFFFF; ++index) {
-      bool inside = false;
-      for (const Area& area : areas) inside |= index >= area.first && index < area.first + area.count;
+      const bool inside = IndexAreas::any(areas.windows, index) || IndexAreas::any(areas.parameters, index);
       const ParameterReply reply = store.execute(ParameterService::Read, static_cast<uint16_t>(index));
       const uint32_t want = list.count(static_cast<uint16_t>(index)) ? kOk : refusal(inside ? 0x11 : 0x10);
       ASSERT_EQ(reply ? kOk : reply.error().packed(), want) << unit.unit << " index " << index;

@@ -213,35 +213,21 @@ TEST(ServiceRows, AttributesWalkTheList) {
 // Indices by area: a value, or 10h outside of the areas, or 11h in a gap of one.
 TEST(ServiceRows, IndicesByArea) {
   PROVES("PAR-07", "PAR-15", "M07-PAR-16");
-  struct Area {
-    int first, count;
-  };
   for (const UnitLists& unit : kUnits) {
-    const bool m07 = std::string(unit.unit) == "mc07";
-    const int variables = std::string(unit.unit) == "mdxb" ? 1024 : 512;
     const auto list = listed(unit.files, unit.option_cards);
-    // Variables, program and curve points are there; the tables of errors and of the motor are not simulated: 11h.
-    std::vector<Area> windows = {{11'000, variables}, {16'000, m07 ? 1024 : 2048}};
-    std::vector<Area> areas;
-    if (!m07) areas = {{8300, 700}, {10'000, 100}, {10'300, 40}, {10'600, 40}};
-    if (!m07) windows.push_back({20'000, 513});
+    const IndexAreas areas = index_areas(unit);
     Asked asked(unit.unit);
     std::set<int> asked_for;
     for (int index = 8192; index <= 9600; ++index) asked_for.insert(index);
     for (int index = 0; index <= 0xFFFF; index += 97) asked_for.insert(index);
-    for (const auto& all : {windows, areas})
+    for (const auto& all : {areas.windows, areas.parameters})
       for (const Area& area : all)
         for (const int edge : {area.first, area.first + area.count})
           for (int index = edge - 2; index <= edge + 1; ++index) asked_for.insert(index);
     for (const int edge : {8191, 8192, 24'575, 24'576, 0, 0xFFFF}) asked_for.insert(edge);
     for (const int index : asked_for) {
-      const auto in = [&](const std::vector<Area>& all) {
-        return std::any_of(all.begin(), all.end(), [&](const Area& area) {
-          return index >= area.first && index < area.first + area.count;
-        });
-      };
-      const uint32_t want =
-          list.contains(static_cast<uint16_t>(index)) || in(windows) ? kOk : refusal(in(areas) ? 0x11 : 0x10);
+      const bool is_there = list.contains(static_cast<uint16_t>(index)) || IndexAreas::any(areas.windows, index);
+      const uint32_t want = is_there ? kOk : refusal(IndexAreas::any(areas.parameters, index) ? 0x11 : 0x10);
       ASSERT_EQ(asked.ask(1, static_cast<uint16_t>(index)).code, want) << unit.unit << " index " << index;
     }
   }
@@ -271,18 +257,8 @@ TEST(ServiceRows, CountersSurviveDisplaysDoNot) {
 
 TEST(ServiceRows, PrintedDefaultsAndLimits) {
   PROVES("PAR-30", "PAR-31", "PAR-32", "PAR-34", "PAR-35");
-  const struct {
-    uint16_t index;
-    int32_t default_value, minimum, maximum;
-  } rows[] = {{8597, 0, 0, 99},         {8598, 100, 100, 199},  {8599, 0, 0, 650000}, {8600, 0, 0, 63},
-              {8601, 0, 0, 63},         {8602, 100, 0, 650000}, {8603, 2, 0, 3},      {8604, 0, 0, 2047000},
-              {8732, 1000, 0, 2047000}, {8606, 500, 0, 650000}, {8609, 3, 0, 7},      {8610, 4, 0, 7},
-              {8611, 3, 0, 7},          {8612, 7, 0, 7},        {8613, 3, 0, 7},      {8616, 0, 0, 7},
-              {8615, 3, 0, 7},          {8304, 9, 0, 12},       {8305, 1, 0, 12},     {8306, 0, 0, 12},
-              {8307, 6, 0, 11},         {8308, 1, 0, 11},       {8309, 2, 0, 11},     {8461, 0, 0, 10},
-              {8462, 0, 0, 3}};
   Asked asked("md60a");
-  for (const auto& row : rows) {
+  for (const PrintedRow& row : kPrintedRows) {
     EXPECT_EQ(asked.read(row.index), row.default_value) << row.index;
     EXPECT_EQ(asked.ask(6, row.index).value, row.default_value) << row.index;
     EXPECT_EQ(asked.ask(4, row.index).value, row.minimum) << row.index;
